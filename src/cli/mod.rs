@@ -1,0 +1,4 @@
+//! todo
+
+/// todo
+pub fn main() -> std::process::ExitCode { std::process::ExitCode::SUCCESS }

@@ -1,0 +1,21 @@
+//! Geometry values and the queries on them: meshes, strands, curves, frames, trees, solids, sampling.
+//!
+//! Right-handed, Y up, the face looks to +Z and the head's left is +X; centimetres and radians.
+
+pub mod bounds;
+pub mod bvh;
+pub mod curve;
+pub mod frames;
+pub mod mesh;
+pub mod obox;
+pub mod polygon;
+pub mod sample;
+pub mod solid;
+pub mod strands;
+
+pub use bounds::Bounds;
+
+pub use mesh::{Group, Mesh, MeshError};
+pub use obox::OrientedBox;
+
+pub use strands::{Root, Strands};

@@ -1,0 +1,108 @@
+//! The description of a parameter struct.
+
+use super::{FieldType, Reader, Table};
+
+/// What a field takes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// A number.
+    Number,
+    /// A whole number.
+    Integer,
+    /// True or false.
+    Bool,
+    /// Text.
+    Text,
+    /// One of these texts.
+    Choice(&'static [&'static str]),
+    /// `{x, y, z}` or a vector, in cm.
+    Point,
+    /// `{x, y, z}` or a vector of any length but zero.
+    Direction,
+    /// `"#rrggbb"` or `{r, g, b}` with channels 0..1.
+    Colour,
+    /// A list.
+    List(Box<Kind>),
+    /// Any of these.
+    OneOf(Vec<Kind>),
+    /// A function.
+    Function,
+    /// A value that Coif made.
+    Object(&'static str),
+    /// A table with fields of its own, by the name of its struct.
+    Struct(&'static str),
+    /// Anything.
+    Any,
+}
+
+/// One parameter.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// As a script writes it.
+    pub name: &'static str,
+    /// What it means.
+    pub doc: &'static str,
+    /// What it takes.
+    pub kind: Kind,
+    /// Its unit, if it has one.
+    pub unit: Option<&'static str>,
+    /// Least and greatest value, both allowed.
+    pub range: Option<(f64, f64)>,
+    /// What it is when left out, as a script would write it; `nil` for "may be left out".
+    pub default: Option<String>,
+    /// True when it is the list part of the table.
+    pub is_positional: bool,
+}
+
+impl Field {
+    /// A field of type `T`.
+    pub fn new<T: FieldType>(name: &'static str, doc: &'static str) -> Self {
+        let default = T::absent().map(|_| "nil".to_owned());
+        Self { name, doc: doc.trim(), kind: T::kind(), unit: T::unit(), range: None, default, is_positional: false }
+    }
+
+    /// With a default.
+    #[must_use]
+    pub fn default<T: FieldType>(mut self, value: &T) -> Self {
+        self.default = Some(value.show());
+        self
+    }
+
+    /// With a unit.
+    #[must_use]
+    pub fn unit(mut self, unit: &'static str) -> Self {
+        self.unit = Some(unit);
+        self
+    }
+
+    /// With limits, both allowed.
+    #[must_use]
+    pub fn range(mut self, lo: f64, hi: f64) -> Self {
+        self.range = Some((lo, hi));
+        self
+    }
+
+    /// Taken from the list part of the table instead of a named field.
+    #[must_use]
+    pub fn positional(mut self) -> Self {
+        self.is_positional = true;
+        self
+    }
+
+    /// True when a script must give it.
+    pub fn is_required(&self) -> bool {
+        self.default.is_none()
+    }
+}
+
+/// A struct that a script fills by a table; implement it by [`params!`](crate::params!).
+pub trait Params: Sized {
+    /// What a script calls: `coif.domain.gather`.
+    const NAME: &'static str;
+    /// What it is.
+    const DOC: &'static str;
+    /// Its fields, in the order they are documented.
+    fn fields() -> Vec<Field>;
+    /// Reads a table, collecting every problem in `reader`; `None` when there was one.
+    fn read(table: &Table, reader: &mut Reader) -> Option<Self>;
+}
