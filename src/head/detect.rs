@@ -129,12 +129,12 @@ pub(super) fn detect(mesh: &Mesh, bvh: &Bvh) -> Result<Landmarks, HeadError> {
     let range = (neck + 0.12 * size, neck + 0.72 * size);
     let (nose, sure) = front.nose(range.0, range.1, size);
     let (_, behind) = back.nose(range.0, range.1, size);
-    eprintln!("nose {} sure {sure} behind {behind} size {size}", front.y(nose));
     let has_nose = sure > 0.008 * size;
     if behind > 0.025 * size && behind > 2.0 * sure {
         return Err(HeadError::Backwards);
     }
-    let is_clear = sure > 0.03 * size;
+    // Seen from the side an ear may pass for a nose; but then there is one on the other side too.
+    let is_clear = sure > 0.03 * size && behind < 0.5 * sure;
     if !is_clear && plane.residual > 4.0 * search.across().residual + (0.01 * size) * (0.01 * size) {
         return Err(HeadError::Sideways);
     }
