@@ -32,10 +32,10 @@ impl Ear {
         let flat = Vec2::new((e.x - 0.08 * (e.y - 0.5)) / narrow.clamp(0.55, 1.25), e.y);
         let outline = ellipse(flat, Vec2::new(1.62, 3.1));
         // Root: fills the space between the plate and the head, so no narrow gap is left behind the ear.
-        let root = ellipsoid(e, Vec3::new(-0.75, 0.2, -0.75), Vec3::new(1.35, 2.5, 1.0));
+        let root = ellipsoid(e, Vec3::new(-0.45, 0.05, -1.0), Vec3::new(1.6, 2.9, 1.05));
         let plate = meet(outline + 0.1, (e.z + 0.2).abs() - 0.26, 0.3);
-        let mut d = join(head, root, 1.0);
-        d = join(d, plate, 0.5);
+        let mut d = join(head, root, 1.6);
+        d = join(d, plate, 0.8);
         // Concha.
         d = carve(d, ellipsoid(e, Vec3::new(-0.35, -0.35, 0.25), Vec3::new(0.85, 1.25, 0.75)), 0.35);
         // Helix: a roll along the outline, from the crus over the top and down behind.
