@@ -85,7 +85,7 @@ fn eye(d: f32, p: Vec3) -> f32 {
     d = join(d, ball, 0.5);
     // The upper lid lies a little over the lower one, down to the lashes.
     let off = p.x - 3.2;
-    let lid = meet(ball - 0.13, 0.62 + 0.11 * off * off - p.y, 0.1);
+    let lid = meet(ball - 0.18, 0.62 + 0.11 * off * off - p.y, 0.1);
     join(d, lid, 0.1)
 }
 
@@ -96,19 +96,19 @@ fn nose(d: f32, p: Vec3) -> f32 {
     d = join(d, sphere(p, at(0.0, -2.35, 10.75), 0.72), 0.8);
     d = join(d, ellipsoid(p, at(1.06, -2.7, 9.75), at(0.55, 0.64, 1.1)), 0.9);
     d = join(d, ellipsoid(p, at(0.0, -3.0, 10.1), at(0.36, 0.4, 0.8)), 0.4);
-    carve(d, ellipsoid(p, at(0.58, -3.4, 10.15), at(0.27, 0.38, 0.5)), 0.25)
+    carve(d, ellipsoid(p, at(0.56, -3.45, 10.1), at(0.3, 0.42, 0.5)), 0.4)
 }
 
 /// Muzzle, philtrum and lips.
 fn mouth(d: f32, p: Vec3) -> f32 {
-    let mut d = join(d, ellipsoid(p, at(0.0, -5.3, 6.9), at(3.4, 2.7, 2.35)), 2.4);
-    d = carve(d, tube(p, at(0.0, -3.8, 9.95), at(0.0, -4.7, 10.1), 0.1, 0.16), 0.6);
-    let upper = bent_tube::<4>(p, [at(0.0, -5.05, 9.55), at(1.1, -4.95, 9.5), at(2.5, -5.7, 8.4)], [0.42, 0.42, 0.12]);
-    let lower = bent_tube::<4>(p, [at(0.0, -6.1, 9.4), at(1.1, -6.25, 9.3), at(2.4, -5.75, 8.4)], [0.5, 0.48, 0.1]);
-    let line = bent_tube::<4>(p, [at(0.0, -5.58, 10.0), at(1.0, -5.42, 9.85), at(2.7, -5.75, 8.7)], [0.13, 0.13, 0.15]);
-    d = join(d, upper, 0.35);
-    d = join(d, lower, 0.35);
-    carve(d, line, 0.3)
+    let mut d = join(d, ellipsoid(p, at(0.0, -5.3, 6.9), at(3.4, 2.7, 2.15)), 2.2);
+    d = carve(d, tube(p, at(0.0, -3.9, 10.05), at(0.0, -4.6, 10.15), 0.1, 0.16), 0.6);
+    let upper = bent_tube::<4>(p, [at(0.0, -5.1, 9.62), at(1.3, -4.85, 9.6), at(2.65, -5.6, 8.6)], [0.36, 0.4, 0.14]);
+    let lower = bent_tube::<4>(p, [at(0.0, -6.08, 9.45), at(1.2, -6.2, 9.4), at(2.5, -5.72, 8.6)], [0.44, 0.44, 0.12]);
+    let line = bent_tube::<4>(p, [at(0.0, -5.58, 10.0), at(1.1, -5.42, 9.9), at(2.8, -5.72, 8.85)], [0.13, 0.13, 0.16]);
+    d = join(d, upper, 0.25);
+    d = join(d, lower, 0.25);
+    carve(d, line, 0.25)
 }
 
 /// Neck and shoulders.
@@ -118,11 +118,10 @@ fn trunk(d: f32, p: Vec3) -> f32 {
     if p.y > -4.0 {
         return d;
     }
-    let slope = tube(at(p.x, p.y, p.z * 0.7), at(0.5, -12.2, -2.4), at(12.8, -19.0, -2.2), 2.0, 1.9);
+    let slope = tube(at(p.x, p.y, p.z * 0.7), at(0.5, -12.2, -2.4), at(11.5, -18.8, -2.2), 2.0, 1.5);
     d = join(d, slope, 3.5);
-    let torso = tube(at(p.x, p.y, p.z * 0.72), at(0.0, -23.0, -2.2), at(12.2, -24.5, -2.2), 5.6, 4.0);
-    d = join(d, torso, 4.5);
-    d = join(d, tube(p, at(1.4, -17.7, 2.0), at(11.5, -17.4, -1.4), 0.45, 0.6), 1.6);
+    d = join(d, ellipsoid(p, at(0.0, -24.2, -2.8), at(16.6, 7.6, 7.8)), 5.0);
+    d = join(d, tube(p, at(1.4, -17.9, 2.0), at(11.0, -17.9, -1.2), 0.45, 0.6), 1.8);
     meet(d, -24.0 - p.y, 2.4)
 }
 
@@ -176,7 +175,7 @@ pub fn form() -> Form {
         distance,
         edge,
         rings: &RINGS,
-        columns: &[(19, 42.0), (11, 36.0), (18, 32.0), (12, 70.0)],
+        columns: &[(22, 42.0), (10, 36.0), (17, 32.0), (11, 70.0)],
         zone,
         landmarks: [
             ("vertex", at(0.0, 20.0, -0.5), at(0.0, -1.0, 0.0)),

@@ -41,7 +41,7 @@ impl Ear {
         // Helix: a roll along the outline, from the crus over the top and down behind.
         let fade = ((e.x + 1.5) * 0.8 + (e.y - 0.3).abs() * 0.5).clamp(0.0, 1.0);
         let rim = Vec2::new(outline + 0.22, e.z - 0.12).length() - 0.30 * (0.35 + 0.65 * fade);
-        let rim = meet(rim, -e.y - 1.7, 0.8);
+        let rim = meet(rim, -e.y - 2.1, 1.0);
         d = join(d, rim, 0.18);
         let crus = bent_tube::<4>(
             e,
@@ -60,7 +60,7 @@ impl Ear {
         d = join(d, ellipsoid(e, Vec3::new(-1.2, -0.45, 0.05), Vec3::new(0.36, 0.55, 0.42)), 0.35);
         d = join(d, sphere(e, Vec3::new(-0.05, -1.5, 0.05), 0.3), 0.4);
         // Lobe.
-        let lobe = ellipsoid(e, Vec3::new(-0.45, -2.25, -0.08), Vec3::new(0.8, 0.95, 0.36));
+        let lobe = ellipsoid(e, Vec3::new(-0.42, -2.2, -0.22), Vec3::new(0.85, 0.95, 0.4));
         let _ = tube;
         join(d, lobe, 0.4)
     }
