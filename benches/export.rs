@@ -29,7 +29,7 @@ fn scene() -> Scene {
         normal.y = normal.y.abs();
         let root = Root { id, position: normal * 9.0, normal, uv: Vec2::ZERO, triangle: 0 };
         let axis = normal.cross(Vec3::NEG_Y).normalize_or(Vec3::X);
-        let over = trig::acos(normal.y).max(0.2) * -1.0 + std::f32::consts::FRAC_PI_2;
+        let over = std::f32::consts::FRAC_PI_2 - trig::acos(normal.y);
         let phase = key.with(1).range(0.0, std::f32::consts::TAU);
         let end = Quat::from_axis_angle(axis, over) * normal * 9.5;
         strands.push(

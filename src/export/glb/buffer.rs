@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use super::document::{self as json, Accessor, Buffer, BufferView, Document};
-use crate::export::ExportError;
+use super::document::{self as json, Accessor, BufferView, Document};
 use crate::geometry::Bounds;
 
 /// One attribute of a vertex.
@@ -51,6 +50,7 @@ pub struct Slot {
 /// The plan of the buffer; it is allocated when everything has its place.
 #[derive(Default)]
 pub struct Plan {
+    /// Bytes given away so far.
     length: u64,
 }
 
@@ -81,20 +81,12 @@ impl Plan {
         let index_view = view(index_bytes, None, json::INDICES);
         let mut accessor = |buffer_view, byte_offset, component_type, normalized, count, shape| {
             let (min, max) = (None, None);
-            document.accessors.push(Accessor {
-                buffer_view,
-                byte_offset,
-                component_type,
-                normalized,
-                count,
-                shape,
-                min,
-                max,
-            });
+            let accessor = Accessor { buffer_view, byte_offset, component_type, normalized, count, shape, min, max };
+            document.accessors.push(accessor);
             document.accessors.len() as u32 - 1
         };
         let mut offset = 0;
-        let attributes = attributes
+        let attributes: Vec<_> = attributes
             .iter()
             .map(|a| {
                 let index = accessor(vertex_view, offset, a.component, a.normalized, vertices, a.shape);
@@ -103,6 +95,11 @@ impl Plan {
             })
             .collect();
         let indices = accessor(index_view, 0, json::U32, false, indices, "SCALAR");
+        // Until the bounds are known, the longest text that they can have keeps their place.
+        let longest = glam::DVec3::splat(-f64::MIN_POSITIVE);
+        if let Some(accessor) = attributes.first().and_then(|&(_, i)| document.accessors.get_mut(i as usize)) {
+            (accessor.min, accessor.max) = (Some(longest.to_array()), Some(longest.to_array()));
+        }
         Slot {
             bytes: start as usize..self.length as usize,
             vertex_bytes: vertex_bytes as usize,
@@ -126,15 +123,9 @@ impl Plan {
         (start as usize..start as usize + length, document.buffer_views.len() as u32 - 1)
     }
 
-    /// The buffer, all zero, once it is known to fit.
-    pub fn allocate(&self, document: &mut Document, limit: u64) -> Result<Vec<u8>, ExportError> {
-        if self.length > limit {
-            return Err(ExportError::TooLarge { bytes: self.length, limit });
-        }
-        if self.length > 0 {
-            document.buffers.push(Buffer { byte_length: self.length });
-        }
-        Ok(vec![0; self.length as usize])
+    /// Bytes of the whole buffer.
+    pub fn length(&self) -> u64 {
+        self.length
     }
 }
 
@@ -143,8 +134,8 @@ impl Slot {
     pub fn set_bounds(&self, document: &mut Document, bounds: Bounds) {
         if let Some((_, index)) = self.attributes.first() {
             let accessor = &mut document.accessors[*index as usize];
-            accessor.min = Some(bounds.min.as_dvec3().to_array());
-            accessor.max = Some(bounds.max.as_dvec3().to_array());
+            accessor.min = bounds.min.as_dvec3().to_array().into();
+            accessor.max = bounds.max.as_dvec3().to_array().into();
         }
     }
 }
@@ -157,6 +148,14 @@ impl Pen<'_> {
     pub fn bytes<const N: usize>(&mut self, bytes: [u8; N]) {
         if let Some((place, rest)) = std::mem::take(&mut self.0).split_first_chunk_mut() {
             *place = bytes;
+            self.0 = rest;
+        }
+    }
+
+    /// As many bytes as there are.
+    pub fn slice(&mut self, bytes: &[u8]) {
+        if let Some((place, rest)) = std::mem::take(&mut self.0).split_at_mut_checked(bytes.len()) {
+            place.copy_from_slice(bytes);
             self.0 = rest;
         }
     }

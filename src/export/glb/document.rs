@@ -46,6 +46,14 @@ pub struct Document {
     pub buffers: Vec<Buffer>,
 }
 
+impl Document {
+    /// The text of the JSON chunk.
+    pub fn to_json(&self) -> Vec<u8> {
+        // Plain structs with texts for keys, written to memory: nothing can fail.
+        serde_json::to_vec(self).unwrap_or_default()
+    }
+}
+
 #[derive(Serialize)]
 pub struct Asset {
     pub version: &'static str,

@@ -16,8 +16,8 @@ use std::borrow::Cow;
 
 use glam::Affine3A;
 
-use self::buffer::{Plan, Slot};
-use self::document::{Document, Extras, MeshEntry, Node, PartExtras, Primitive, SceneNodes};
+use self::buffer::{Pen, Plan, Slot};
+use self::document::{Buffer, Document, Extras, MeshEntry, Node, PartExtras, Primitive, SceneNodes};
 use self::shapes::{Drawn, METRES};
 use super::reduce::reduce;
 use super::{ExportError, check_hair};
@@ -44,7 +44,7 @@ crate::params! {
         /// What strands become.
         strands: StrandForm = StrandForm::Ribbons;
         /// No point of a strand is farther than this from what is drawn of it; 0 keeps every bend.
-        tolerance: f32 = 0.02, unit("cm"), range(0.0, 10.0);
+        tolerance: f32 = 0.05, unit("cm"), range(0.0, 10.0);
         /// A larger file is refused; the format itself ends at 4294967295.
         max_bytes: u64 = u64::from(u32::MAX), unit("bytes"), range(0.0, 4294967295.0);
     }
@@ -52,7 +52,7 @@ crate::params! {
 
 impl Default for GlbOptions {
     fn default() -> Self {
-        Self { strands: StrandForm::Ribbons, tolerance: 0.02, max_bytes: u64::from(u32::MAX) }
+        Self { strands: StrandForm::Ribbons, tolerance: 0.05, max_bytes: u64::from(u32::MAX) }
     }
 }
 
@@ -203,47 +203,53 @@ impl<'a> File<'a> {
         Ok(())
     }
 
-    /// Writes the buffer, then the file: header, JSON chunk, binary chunk (glTF 2.0 specification, section 4).
+    /// Writes the file: header, JSON chunk, binary chunk (glTF 2.0 specification, section 4).
+    ///
+    /// The JSON comes first, but has the bounds of what comes after it. It gets a place that is surely large enough and
+    /// is padded with spaces, so that the buffer is written where it stays: a copy would take as long as the rest.
     fn finish(mut self, max_bytes: u64, task: &Task) -> Result<Vec<u8>, ExportError> {
+        let byte_length = self.plan.length();
+        if byte_length > 0 {
+            self.document.buffers.push(Buffer { byte_length });
+        }
+        let json = self.document.to_json().len().next_multiple_of(4);
+        let bin = byte_length as usize;
+        let start = if bin == 0 { 20 + json } else { 28 + json };
+        let length = start as u64 + byte_length;
         let limit = max_bytes.min(u64::from(u32::MAX));
-        let mut bin = self.plan.allocate(&mut self.document, limit)?;
+        if length > limit {
+            return Err(ExportError::TooLarge { bytes: length, limit });
+        }
+
+        let mut file = vec![0; length as usize];
+        let (head, buffer) = file.split_at_mut(start);
         let count = self.jobs.len() as f32;
         for (i, job) in self.jobs.into_iter().enumerate() {
             task.progress("writing glb", i as f32 / count);
-            match job {
-                Job::Surface(mesh, slot) => {
-                    let bounds = shapes::write_surface(&mesh, &mut bin, &slot);
-                    slot.set_bounds(&mut self.document, bounds);
+            let (bounds, slot) = match job {
+                Job::Surface(mesh, slot) => (shapes::write_surface(&mesh, buffer, &slot), slot),
+                Job::Ribbons(drawn, slot) => (drawn.write_ribbons(buffer, &slot, task)?, slot),
+                Job::Lines(drawn, slot) => (drawn.write_lines(buffer, &slot, task)?, slot),
+                Job::Blob(bytes, range) => {
+                    buffer[range].copy_from_slice(&bytes);
+                    continue;
                 }
-                Job::Ribbons(drawn, slot) => {
-                    let bounds = drawn.write_ribbons(&mut bin, &slot, task)?;
-                    slot.set_bounds(&mut self.document, bounds);
-                }
-                Job::Lines(drawn, slot) => {
-                    let bounds = drawn.write_lines(&mut bin, &slot, task)?;
-                    slot.set_bounds(&mut self.document, bounds);
-                }
-                Job::Blob(bytes, range) => bin[range].copy_from_slice(&bytes),
-            }
+            };
+            slot.set_bounds(&mut self.document, bounds);
         }
-        let mut json = serde_json::to_vec(&self.document).unwrap_or_default();
-        json.resize(json.len().next_multiple_of(4), b' ');
-        let chunk = |bytes: &[u8]| if bytes.is_empty() { 0 } else { 8 + bytes.len() };
-        let length = 12 + chunk(&json) + chunk(&bin);
-        if length as u64 > limit {
-            return Err(ExportError::TooLarge { bytes: length as u64, limit });
-        }
-        let mut file = Vec::with_capacity(length);
-        file.extend_from_slice(b"glTF");
-        file.extend_from_slice(&2_u32.to_le_bytes());
-        file.extend_from_slice(&(length as u32).to_le_bytes());
-        for (kind, bytes) in [(b"JSON", &json), (b"BIN\0", &bin)] {
-            if !bytes.is_empty() {
-                file.extend_from_slice(&(bytes.len() as u32).to_le_bytes());
-                file.extend_from_slice(kind);
-                file.extend_from_slice(bytes);
-            }
-        }
+
+        let mut text = self.document.to_json();
+        debug_assert!(text.len() <= json);
+        text.resize(json, b' ');
+        let mut pen = Pen(head);
+        pen.bytes(*b"glTF");
+        pen.index(2);
+        pen.index(length as u32);
+        pen.index(json as u32);
+        pen.bytes(*b"JSON");
+        pen.slice(&text);
+        pen.index(bin as u32);
+        pen.bytes(*b"BIN\0");
         task.progress("writing glb", 1.0);
         Ok(file)
     }
