@@ -14,8 +14,8 @@ pub mod solid;
 pub mod strands;
 
 pub use bounds::Bounds;
-
+pub use bvh::{Bvh, Closest, Hit};
 pub use mesh::{Group, Mesh, MeshError};
 pub use obox::OrientedBox;
-
-pub use strands::{Root, Strands};
+pub use solid::{Solid, SolidError, SurfacePoint};
+pub use strands::{Root, Strands, StrandsError};
