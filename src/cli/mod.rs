@@ -16,7 +16,6 @@ use clap::Parser;
 use crate::export::StrandForm;
 use crate::render::SheetOptions;
 use crate::script::{self, Disk, Ending, Outcome, show_all};
-use crate::task::Task;
 use crate::workbench::{self, RunError, RunOptions};
 
 use args::{Arguments, Command, ParamsArguments, RunArguments, ScriptArguments};

@@ -22,6 +22,9 @@ mod source;
 mod strict;
 mod trace;
 
+#[cfg(test)]
+mod tests;
+
 pub use bind::Parameter;
 pub use diagnostic::{Diagnostic, Frame, Place, Severity};
 pub use files::{Access, AccessError, Disk, Files, Memory};

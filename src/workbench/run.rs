@@ -155,7 +155,7 @@ fn picture(
     let mut drawn = scene.clone();
     drawn.look.debug = debug;
     let what = if debug { "debug picture" } else { "picture" };
-    timed(stages, what, || Ok(png::encode(&sheet(&drawn, &options.sheet, task)?, Speed::default())?))
+    timed(stages, what, || Ok(png::encode(&sheet(&drawn, &options.sheet, task)?, Speed::Balanced)?))
 }
 
 fn timed<R>(stages: &mut Vec<Stage>, what: &'static str, work: impl FnOnce() -> R) -> R {
