@@ -4,126 +4,16 @@
 //! way from the scene to the geometry is checked here first, against the JSON alone. What does not lead to geometry
 //! (pictures, animations, cameras) is not looked at.
 
-use serde::Deserialize;
-
+use super::schema::Root;
 use super::{GltfProblem, LoadError, MAX_VERTICES};
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-#[derive(Default)]
-pub(super) struct Root {
-    asset: Option<Asset>,
-    extensions_required: Vec<String>,
-    scene: Option<u64>,
-    scenes: Vec<Scene>,
-    nodes: Vec<Node>,
-    meshes: Vec<Mesh>,
-    materials: Vec<serde::de::IgnoredAny>,
-    skins: Vec<Skin>,
-    accessors: Vec<Accessor>,
-    buffer_views: Vec<View>,
-    pub buffers: Vec<Buffer>,
-    #[serde(skip)]
-    pub is_used: Vec<bool>,
-}
-
-#[derive(Deserialize)]
-struct Asset {
-    version: String,
-}
-
-#[derive(Deserialize)]
-struct Scene {
-    #[serde(default)]
-    nodes: Vec<u64>,
-}
-
-#[derive(Deserialize)]
-struct Node {
-    #[serde(default)]
-    children: Vec<u64>,
-    mesh: Option<u64>,
-    skin: Option<u64>,
-}
-
-#[derive(Deserialize)]
-struct Mesh {
-    primitives: Vec<Primitive>,
-}
-
-#[derive(Deserialize)]
-struct Primitive {
-    attributes: std::collections::BTreeMap<String, u64>,
-    indices: Option<u64>,
-    material: Option<u64>,
-    mode: Option<u64>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct Skin {
-    inverse_bind_matrices: Option<u64>,
-    joints: Vec<u64>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct Accessor {
-    buffer_view: Option<u64>,
-    #[serde(default)]
-    byte_offset: u64,
-    component_type: u64,
-    count: u64,
-    #[serde(rename = "type")]
-    shape: String,
-    sparse: Option<Sparse>,
-}
-
-#[derive(Deserialize)]
-struct Sparse {
-    count: u64,
-    indices: SparseIndices,
-    values: SparseValues,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct SparseIndices {
-    buffer_view: u64,
-    #[serde(default)]
-    byte_offset: u64,
-    component_type: u64,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct SparseValues {
-    buffer_view: u64,
-    #[serde(default)]
-    byte_offset: u64,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct View {
-    buffer: u64,
-    #[serde(default)]
-    byte_offset: u64,
-    byte_length: u64,
-    byte_stride: Option<u64>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct Buffer {
-    pub uri: Option<String>,
-    pub byte_length: u64,
-}
 
 const U8: u64 = 5121;
 const U16: u64 = 5123;
 const U32: u64 = 5125;
 const F32: u64 = 5126;
+/// The most entries of a sparse accessor that stands on zeros instead of data: nothing in the file pays for them.
+const MAX_BARE: u64 = 1 << 20;
+
 /// i8, u8, i16, u16, f32: what `KHR_mesh_quantization` allows.
 const QUANTISED: &[u64] = &[5120, U8, 5122, U16, F32];
 
@@ -322,12 +212,9 @@ impl Root {
         if a.count == 0 {
             return Err(problem(path() + ".count", GltfProblem::Unexpected { wanted: "at least 1", got: "0".into() }));
         }
-        if a.count > 3 * MAX_VERTICES {
-            return Err(LoadError::TooMuch {
-                what: format!("entries in {}", path()),
-                count: a.count,
-                limit: 3 * MAX_VERTICES,
-            });
+        let limit = if a.buffer_view.is_some() { 3 * MAX_VERTICES } else { MAX_BARE };
+        if a.count > limit {
+            return Err(LoadError::TooMuch { what: format!("entries in {}", path()), count: a.count, limit });
         }
         let size = component_size(a.component_type) * components(wanted.shape);
         let mut spans = Vec::new();
