@@ -9,6 +9,8 @@ mod detect;
 mod ear;
 mod error;
 mod landmarks;
+pub mod load;
+pub mod mannequin;
 mod mask;
 mod parting;
 mod polygon;
