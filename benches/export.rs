@@ -71,23 +71,23 @@ fn write(bencher: Bencher, options: &GlbOptions) {
 }
 
 /// The machine's limit: as many bytes as `ribbons` writes, into fresh memory.
-#[divan::bench]
+#[divan::bench(sample_count = 12)]
 fn store_the_bytes_of_ribbons(bencher: Bencher) {
     let bytes = glb(&scene(), &GlbOptions::default(), &Task::new()).expect("a good scene").len();
     bencher.counter(BytesCount::new(bytes)).bench_local(|| vec![1_u8; bytes]);
 }
 
-#[divan::bench]
+#[divan::bench(sample_count = 12)]
 fn ribbons(bencher: Bencher) {
     write(bencher, &GlbOptions::default());
 }
 
-#[divan::bench]
+#[divan::bench(sample_count = 12)]
 fn ribbons_with_every_node(bencher: Bencher) {
     write(bencher, &GlbOptions { tolerance: 0.0, ..GlbOptions::default() });
 }
 
-#[divan::bench]
+#[divan::bench(sample_count = 12)]
 fn lines(bencher: Bencher) {
     write(bencher, &GlbOptions { strands: StrandForm::Lines, ..GlbOptions::default() });
 }
