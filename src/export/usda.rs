@@ -115,7 +115,8 @@ impl Writer {
     /// Some lines, all indented.
     fn line(&mut self, indent: usize, text: &str) -> Result<(), ExportError> {
         for line in text.split('\n') {
-            self.bytes.resize(self.bytes.len() + 4 * indent, b' ');
+            let spaces = if line.is_empty() { 0 } else { 4 * indent };
+            self.bytes.resize(self.bytes.len() + spaces, b' ');
             self.bytes.extend_from_slice(line.as_bytes());
             self.bytes.push(b'\n');
         }
@@ -210,8 +211,8 @@ impl Writer {
     ) -> Result<(), ExportError> {
         let each: Vec<(usize, &[u32])> = blocks.iter().flat_map(Block::strands).collect();
         let points = |nodes: &[u32]| -> Vec<glam::Vec3> { nodes.iter().map(|&n| strands.points[n as usize]).collect() };
-        let widest = glam::Vec3::splat(0.5 * look.width).length();
-        let bounds = strands.bounds();
+        // Half the greatest width on every side, as USD itself computes it.
+        let (widest, bounds) = (0.5 * look.width, strands.bounds());
         self.head("BasisCurves", name, part, if bounds.is_empty() { bounds } else { bounds.grown(widest) }, binding)?;
         if is_guide {
             self.line(2, "uniform token purpose = \"guide\"")?;
