@@ -196,5 +196,6 @@ fn samples() {
     std::fs::create_dir_all(&folder).unwrap();
     let scene = scene(400);
     std::fs::write(folder.join("style.usda"), usda(&scene, &UsdaOptions::default(), &Task::new()).unwrap()).unwrap();
-    std::fs::write(folder.join("style.hair"), cyhair(&scene, &CyHairOptions::default(), &Task::new()).unwrap()).unwrap();
+    std::fs::write(folder.join("style.hair"), cyhair(&scene, &CyHairOptions::default(), &Task::new()).unwrap())
+        .unwrap();
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::buffer::{Attribute, Pen, Slot};
 use super::document as json;
-use super::frames::{Frame, frames};
+use super::frames::{Frame, ribbon};
 use crate::export::appearance;
 use crate::export::reduce::Block;
 use crate::geometry::{Bounds, Mesh, Strands};
@@ -81,7 +81,7 @@ impl Drawn<'_> {
     pub fn write_ribbons(&self, bytes: &mut [u8], slot: &Slot, task: &Task) -> Result<Bounds, Cancelled> {
         self.write(bytes, slot, (2, 6), task, |strand, nodes, first, vertices, indices, scratch| {
             let root = &self.strands.roots[strand];
-            frames(nodes.iter().map(|&n| self.strands.points[n as usize]), root.normal, scratch);
+            ribbon(nodes.iter().map(|&n| self.strands.points[n as usize]), root.normal, scratch);
             let shade =
                 (appearance::brightness(self.look, root.id) / appearance::brightest(self.look) * 255.0).round() as u8;
             let mut bounds = Bounds::EMPTY;
