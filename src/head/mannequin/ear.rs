@@ -18,7 +18,8 @@ impl Ear {
     /// Distance to the ear joined with what is behind it.
     pub fn join_to(&self, head: f32, p: Vec3) -> f32 {
         let q = (p - self.centre) / self.scale;
-        if q.length_squared() > 5.2 * 5.2 {
+        // Nothing of the ear is further than 3.4 from its centre, and no blend below reaches further than 1.6.
+        if q.length() > 3.4 + 1.7 + (head / self.scale).abs() {
             return head;
         }
         let e = Vec3::new(q.dot(self.axes[0]), q.dot(self.axes[1]), q.dot(self.axes[2]));

@@ -21,6 +21,12 @@ pub fn carve(a: f32, b: f32, k: f32) -> f32 {
     meet(a, -b, k)
 }
 
+/// Whether a feature inside a ball may change a field of value `d` at `p`, if its blends reach at most 2 cm further
+/// than the ball: a blend changes nothing beyond its own reach, so what is not near need not be computed.
+pub fn near(p: Vec3, d: f32, centre: Vec3, radius: f32) -> bool {
+    (p - centre).length_squared() < (radius + 2.0 + d.abs()) * (radius + 2.0 + d.abs())
+}
+
 /// Distance to an ellipsoid: exact on the surface and to first order around it.
 pub fn ellipsoid(p: Vec3, centre: Vec3, radii: Vec3) -> f32 {
     let q = p - centre;
