@@ -77,6 +77,9 @@ fn skull(p: Vec3) -> f32 {
     if near(p, d, at(4.3, -0.4, 5.2), 3.5) {
         d = join(d, ellipsoid(p, at(4.3, -0.4, 5.2), at(2.1, 1.7, 2.5)), 3.0);
     }
+    if near(p, d, at(3.0, -4.0, 4.5), 3.4) {
+        d = join(d, ellipsoid(p, at(3.0, -4.0, 4.5), at(2.3, 2.6, 2.6)), 2.8);
+    }
     if near(p, d, at(8.9, 3.4, 5.0), 2.4) {
         d = carve(d, ellipsoid(p, at(8.9, 3.4, 5.0), at(1.5, 2.2, 2.4)), 2.0);
     }
@@ -110,7 +113,7 @@ fn eye(d: f32, p: Vec3) -> f32 {
 fn nose(d: f32, p: Vec3) -> f32 {
     let mut d = join(d, tube(p, at(0.0, 1.9, 8.65), at(0.0, -1.9, 10.5), 0.5, 0.66), 0.9);
     d = join(d, ellipsoid(p, at(0.0, -1.5, 8.9), at(1.35, 2.2, 1.25)), 0.9);
-    d = join(d, sphere(p, at(0.0, -2.3, 10.78), 0.68), 0.8);
+    d = join(d, sphere(p, at(0.0, -2.2, 10.78), 0.68), 0.8);
     d = join(d, ellipsoid(p, at(1.02, -2.7, 9.75), at(0.52, 0.62, 1.1)), 0.9);
     d = join(d, ellipsoid(p, at(0.0, -3.0, 10.1), at(0.36, 0.42, 0.85)), 0.8);
     carve(d, ellipsoid(p, at(0.56, -3.45, 10.1), at(0.3, 0.42, 0.5)), 0.4)

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::field::{bent_tube, carve, ellipse, ellipsoid, join, meet, sphere, tube};
+use super::field::{bent_tube, carve, ellipse, ellipsoid, join, meet, sphere};
 
 /// Where an ear sits and how large it is.
 pub struct Ear {
@@ -62,7 +62,6 @@ impl Ear {
         d = join(d, sphere(e, Vec3::new(-0.05, -1.5, 0.05), 0.3), 0.4);
         // Lobe.
         let lobe = ellipsoid(e, Vec3::new(-0.42, -2.2, -0.22), Vec3::new(0.85, 0.95, 0.4));
-        let _ = tube;
         join(d, lobe, 0.4)
     }
 }

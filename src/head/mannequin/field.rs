@@ -68,11 +68,6 @@ pub fn ellipse(q: Vec2, radii: Vec2) -> f32 {
     if k1 < 1e-9 { -radii.min_element() } else { k0 * (k0 - 1.0) / k1 }
 }
 
-/// `|x|` with its kink at 0 rounded off over about `k` cm, so mirrored forms pass the middle smoothly.
-pub fn soft_abs(x: f32, k: f32) -> f32 {
-    (x * x + k * k).sqrt() - k * 0.2
-}
-
 /// A smooth curve through `(x, y)` knots with ascending `x` (Catmull-Rom slopes), constant beyond the ends.
 pub fn curve<const N: usize>(knots: &[[f32; 2]; N], x: f32) -> f32 {
     let i = knots.iter().position(|k| k[0] > x).unwrap_or(N);
