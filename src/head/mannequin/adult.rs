@@ -1,4 +1,5 @@
-//! The adult mannequin. Measures after the means of ANSUR II (head length 19.5, breadth 15.4, tragion to vertex 13).
+//! The adult mannequin: 23 cm from chin to vertex, 15.5 cm broad, 19.5 cm long, eyes at half height, ears from brow to
+//! nose.
 
 use glam::{Vec2, Vec3};
 
@@ -39,16 +40,14 @@ fn distance(p: Vec3) -> f32 {
     let mut d = f32::MAX;
     if p.y > -16.0 {
         d = skull(p);
-        if near(p, d, at(0.0, -2.8, 8.0), 7.6) {
-            if near(p, d, at(3.2, 1.6, 7.6), 3.2) {
-                d = eye(d, p);
-            }
-            if near(p, d, at(0.0, -1.0, 9.6), 3.6) {
-                d = nose(d, p);
-            }
-            if near(p, d, at(0.0, -5.3, 7.2), 4.2) {
-                d = mouth(d, p);
-            }
+        if near(p, d, at(3.2, 1.6, 8.0), 3.9) {
+            d = eye(d, p);
+        }
+        if near(p, d, at(0.0, -1.0, 9.6), 3.6) {
+            d = nose(d, p);
+        }
+        if near(p, d, at(0.0, -5.3, 7.2), 4.2) {
+            d = mouth(d, p);
         }
     }
     if p.y - 3.0 < d + 2.0 {
@@ -69,7 +68,7 @@ fn skull(p: Vec3) -> f32 {
     let slice = squircle(p.x, p.z, curve(&SIDE, p.y), if p.z > 0.0 { curve(&FRONT, p.y) } else { curve(&BACK, p.y) });
     let face = meet(meet(slice, jaw, 1.4), p.y - 5.5, 3.0);
     d = join(d, face, 2.2);
-    if near(p, d, at(0.0, -8.0, 5.0), 4.6) {
+    if near(p, d, at(0.0, -8.0, 5.0), 5.4) {
         d = join(d, ellipsoid(p, at(0.0, -8.75, 7.2), at(2.1, 1.3, 1.75)), 1.2);
         // The floor of the mouth, so that chin and neck meet in no sharp corner.
         d = join(d, ellipsoid(p, at(0.0, -7.6, 3.6), at(3.4, 2.1, 4.2)), 1.6);
@@ -141,8 +140,8 @@ fn trunk(d: f32, p: Vec3) -> f32 {
     }
     let slope = tube(at(p.x, p.y, p.z * 0.7), at(0.5, -12.2, -2.4), at(11.5, -18.8, -2.2), 2.0, 1.5);
     d = join(d, slope, 3.5);
-    d = join(d, ellipsoid(p, at(0.0, -24.2, -2.8), at(16.6, 7.6, 7.8)), 5.0);
-    d = join(d, tube(p, at(1.4, -17.9, 2.0), at(11.0, -17.9, -1.2), 0.45, 0.6), 1.8);
+    d = join(d, ellipsoid(p, at(0.0, -22.6, -2.8), at(16.2, 6.4, 7.6)), 5.0);
+    d = join(d, tube(p, at(1.3, -17.5, 2.3), at(11.0, -17.5, -0.9), 0.5, 0.6), 1.5);
     meet(d, -24.0 - p.y, 2.4)
 }
 
@@ -160,7 +159,7 @@ fn zone(p: Vec3) -> Zone {
         Zone::Ear
     } else if p.y * 0.86 + p.z * 0.5 < -5.6 || (p.z < -2.0 && p.y < -4.0 + 0.3 * (p.z + 2.0)) {
         Zone::Neck
-    } else if p.z > 1.0 && p.y < 8.5 - 0.12 * p.x * p.x + 0.0 * p.z {
+    } else if p.z > 1.0 && p.y < 8.5 - 0.12 * p.x * p.x {
         Zone::Face
     } else {
         Zone::Head
@@ -191,7 +190,6 @@ const RINGS: [Ring; 15] = [
 
 /// The form of the adult.
 pub fn form() -> Form {
-    let at = Vec3::new;
     Form {
         distance,
         edge,

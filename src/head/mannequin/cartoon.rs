@@ -82,7 +82,7 @@ fn trunk(d: f32, p: Vec3) -> f32 {
     }
     let slope = tube(at(p.x, p.y, p.z * 0.75), at(0.3, -9.9, -1.9), at(7.4, -13.8, -1.7), 1.4, 1.3);
     d = join(d, slope, 2.8);
-    d = join(d, ellipsoid(p, at(0.0, -17.4, -2.1), at(11.2, 5.4, 5.6)), 3.5);
+    d = join(d, ellipsoid(p, at(0.0, -16.4, -2.1), at(10.9, 4.8, 5.4)), 3.5);
     meet(d, -17.2 - p.y, 2.0)
 }
 

@@ -21,8 +21,8 @@ pub fn carve(a: f32, b: f32, k: f32) -> f32 {
     meet(a, -b, k)
 }
 
-/// Whether a feature inside a ball may change a field of value `d` at `p`, if its blends reach at most 2 cm further
-/// than the ball: a blend changes nothing beyond its own reach, so what is not near need not be computed.
+/// Whether a feature may change a field of value `d` at `p`. The ball is drawn so large that no blend of the feature
+/// reaches more than 2 cm beyond it; where this is false, the feature changes nothing and need not be computed.
 pub fn near(p: Vec3, d: f32, centre: Vec3, radius: f32) -> bool {
     (p - centre).length_squared() < (radius + 2.0 + d.abs()) * (radius + 2.0 + d.abs())
 }

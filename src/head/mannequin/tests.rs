@@ -168,6 +168,36 @@ fn normals_are_unit_and_face_outward_at_the_extremes() {
 }
 
 #[test]
+fn fields_have_no_jumps() {
+    for style in STYLES {
+        let form = form(style);
+        let mesh = mesh(style);
+        for (i, (&p, &n)) in mesh.positions.iter().zip(&mesh.normals).enumerate().filter(|(_, (p, _))| p.x >= 0.0) {
+            // Along a line through the surface, slanted differently at every vertex.
+            let slant = (i as f32 * 0.618).fract();
+            let along = n.any_orthonormal_vector() * slant + n * (1.0 - slant);
+            for k in -40..40 {
+                let [mut a, mut b] = [k, k + 1].map(|k| p + along * (k as f32 * 0.05));
+                if a.x < 0.0 || b.x < 0.0 {
+                    continue;
+                }
+                // A steep place is none: a jump stays when it is looked at closely.
+                let change = |a, b| ((form.distance)(a) - (form.distance)(b)).abs();
+                while change(a, b) > 2.0 * a.distance(b) && a.distance(b) > 1e-3 {
+                    let middle = (a + b) / 2.0;
+                    (a, b) = if change(a, middle) > change(middle, b) { (a, middle) } else { (middle, b) };
+                }
+                assert!(
+                    change(a, b) < (2.0 * a.distance(b)).max(0.02),
+                    "{style:?}: from {a} to {b} by {}",
+                    change(a, b)
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn landmarks_lie_on_the_surface() {
     for style in STYLES {
         let mesh = mesh(style);
