@@ -9,9 +9,9 @@ use super::grid::Half;
 /// How far from the surface the wrapping begins, in cm: there the level set has hardly an ear or a nose.
 const START: f32 = 1.2;
 /// Rounds in which the grid closes in on the surface.
-const CLOSING: usize = 12;
+const CLOSING: usize = 10;
 /// Rounds on the surface itself.
-const RESTING: usize = 30;
+const RESTING: usize = 26;
 /// On the surface the direction to it is sought anew every so many rounds; on the way every other round.
 const REFRESH: usize = 4;
 /// Half edge of the tetrahedron of samples, in cm.
