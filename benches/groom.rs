@@ -129,9 +129,9 @@ fn natural(bencher: Bencher) {
         noise: 0.1,
         name: None,
     };
-    let queue = NaturalQueue::new(vec![Arc::new(Domain::Natural(Arc::new(Natural::from(&curl))))]).expect("a good queue");
-    let input =
-        Deform { strands: &strands, queue: &queue, which: &[], solid: Some(&BODY), margin: 0.05, seed: 1 };
+    let queue =
+        NaturalQueue::new(vec![Arc::new(Domain::Natural(Arc::new(Natural::from(&curl))))]).expect("a good queue");
+    let input = Deform { strands: &strands, queue: &queue, which: &[], solid: Some(&BODY), margin: 0.05, seed: 1 };
     bencher.bench_local(|| deform(black_box(&input), &Task::new()));
 }
 
@@ -156,9 +156,7 @@ fn members(bencher: Bencher, is_clear: bool) {
     let source = "bench.lua:2".into();
     let solid = is_clear.then_some(&*BODY);
     let input = Fill { guides: &strands, roots: &roots, options: &options, separated: None, solid, source: &source };
-    bencher
-        .counter(BytesCount::of_many::<Vec3>(40_000 * 64))
-        .bench_local(|| fill(black_box(&input), &Task::new()));
+    bencher.counter(BytesCount::of_many::<Vec3>(40_000 * 64)).bench_local(|| fill(black_box(&input), &Task::new()));
 }
 
 /// The machine's limit: storing the bytes of 40,000 strands of 64 nodes, on one thread, into fresh and into warm memory.

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::clear::{Clear, Outcome, Scratch};
 use super::error::{GroomError, check_size, check_value};
 use super::grow::stuck_warning;
+use super::guides::check_root;
 use super::layout;
 use super::natural::first_normal;
 use super::neighbours::{Nearest, agreement};
@@ -105,6 +106,8 @@ pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
     let n = input.roots.len();
     check_size(n as u64, n as u64 * nodes as u64)?;
 
+    input.roots.iter().try_for_each(check_root)?;
+
     let guides = Prepared::new(input.guides, nodes);
     task.check()?;
     let mut strands = Strands {
@@ -141,8 +144,10 @@ pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
     let mut warnings = Vec::new();
     if alone > 0 {
         warnings.push(
-            Warning::new(format!("`{alone}` of {n} strands were left out: no guide grows on their side of the parting"))
-                .hint("ask for more guides, or move the parting"),
+            Warning::new(format!(
+                "`{alone}` of {n} strands were left out: no guide grows on their side of the parting"
+            ))
+            .hint("ask for more guides, or move the parting"),
         );
     }
     if stuck > 0 {
@@ -204,8 +209,7 @@ impl Prepared {
             )
             .collect();
         let nearest = Nearest::new(guides.roots.iter().map(|r| r.position).collect());
-        let mut prepared =
-            Self { nodes, points, tangents, normals, stages, lengths, nearest, agreements: Vec::new() };
+        let mut prepared = Self { nodes, points, tangents, normals, stages, lengths, nearest, agreements: Vec::new() };
         prepared.agreements = (0..n)
             .into_par_iter()
             .map_init(Vec::new, |found, g| {
