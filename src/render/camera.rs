@@ -98,8 +98,8 @@ pub fn frame(scene: &Scene, views: &[View]) -> Framing {
                 }
             }
             Body::Hair(hair) => {
-                points.extend(hair.strands.points.iter().filter(|p| p.is_finite()));
-                points.extend(hair.guides.points.iter().filter(|p| p.is_finite() && scene.look.debug));
+                let shown = if scene.look.debug { &hair.guides } else { &hair.strands };
+                points.extend(shown.points.iter().filter(|p| p.is_finite()));
                 if scene.look.debug {
                     points.extend(hair.overlay.lines.iter().flat_map(|l| &l.points).filter(|p| p.is_finite()));
                 }

@@ -15,8 +15,8 @@ use super::shade::Studio;
 use super::strands::{Bundle, Chunk, Ink, Tiles, Vertex, gather};
 use super::surface::Layer;
 
-/// A pixel through which less than this passes is finished: half of what 8 bits can show.
-const CLOSED: f32 = 1.0 / 512.0;
+/// A pixel through which less than this passes is finished: what is there is scaled up to fill it.
+const CLOSED: f32 = 1.0 / 64.0;
 /// Strands this far (cm) under a surface still count as on it: roots lie in the skin.
 const ON_SURFACE: f32 = 0.05;
 
@@ -49,6 +49,7 @@ pub fn draw(bundles: &[Bundle], canvas: &Canvas, task: &Task) -> Result<Vec<u8>,
     let edge = (32 / ss).max(1);
     let tiles = Tiles::new(camera.width, camera.height, edge * ss);
     let chunks = gather(bundles, camera, tiles, task)?;
+    task.progress("hair: tiles", 0.6);
     let far = depth_range(&chunks);
     let drawn: Result<Vec<Vec<[u8; 3]>>, Cancelled> = (0..tiles.count())
         .into_par_iter()
@@ -134,7 +135,7 @@ impl Tile {
             let chunk = &chunks[(key >> 24 & 0xf_ffff) as usize];
             let s = (key & 0xff_ffff) as usize;
             let bundle = &bundles[chunk.bundle as usize];
-            self.segment(bundle, &chunk.vertices[s], &chunk.vertices[s + 1], canvas);
+            self.segment(bundle, chunk, s, canvas);
             if self.closed == self.width * self.height {
                 break;
             }
@@ -143,7 +144,8 @@ impl Tile {
 
     /// Draws one segment: per step along its longer axis, the part of each pixel that its width covers across. Summed
     /// over the pixels of a step that is exactly the width, wherever between them the line runs.
-    fn segment(&mut self, bundle: &Bundle, va: &Vertex, vb: &Vertex, canvas: &Canvas) {
+    fn segment(&mut self, bundle: &Bundle, chunk: &Chunk, s: usize, canvas: &Canvas) {
+        let (va, vb) = (&chunk.vertices[s], &chunk.vertices[s + 1]);
         let origin = Vec2::new(self.x0 as f32 + 0.5, self.y0 as f32 + 0.5);
         let steep = (vb.at.y - va.at.y).abs() > (vb.at.x - va.at.x).abs();
         // Along the longer axis there is one row of pixels per step; `u` runs along it.
@@ -167,9 +169,9 @@ impl Tile {
         let slope = Vec3::new(1.0, d.y / d.x, d.z / d.x);
         let cosine = d.x / length;
         let (nu, nv) = if steep { (self.height, self.width) } else { (self.width, self.height) };
-        let first = (a.x - more).ceil().max(0.0) as usize;
-        let end = (b.x + more).ceil().clamp(0.0, nu as f32) as usize;
+        let (first, end) = (fast::ceil(a.x - more), fast::ceil(b.x + more).min(nu));
         let mut colours: Option<(Vec3, Vec3)> = None;
+        let shaded = matches!(bundle.ink, Ink::Hair(..));
         for u in first..end {
             let step = u as f32 - a.x;
             let t = (step / d.x).clamp(0.0, 1.0);
@@ -177,12 +179,7 @@ impl Tile {
             let middle = a.y + slope.y * step;
             let z = a.z + slope.z * step;
             let reach = 0.5 * (w + 1.0);
-            let v0 = (middle - reach).ceil().max(0.0) as usize;
-            let v1 = (middle + reach).floor().min(nv as f32 - 1.0);
-            if v1 < 0.0 {
-                continue;
-            }
-            for v in v0..=v1 as usize {
+            for v in fast::ceil(middle - reach)..fast::ceil(middle + reach).min(nv) {
                 let i = if steep { u * self.edge + v } else { v * self.edge + u };
                 if self.pixels[i].open < CLOSED {
                     continue;
@@ -195,11 +192,16 @@ impl Tile {
                 }
                 let cover = (reach - (v as f32 - middle).abs()).clamp(0.0, w.min(1.0));
                 let (ca, cb) = *colours.get_or_insert_with(|| {
-                    let (ca, cb) = (colour(bundle, va, canvas.studio), colour(bundle, vb, canvas.studio));
+                    let (ca, cb) = (
+                        chunk.colour(s, || colour(bundle, va, canvas.studio)),
+                        chunk.colour(s + 1, || colour(bundle, vb, canvas.studio)),
+                    );
                     if swapped { (cb, ca) } else { (ca, cb) }
                 });
                 let pixel = &mut self.pixels[i];
-                pixel.light += (ca + (cb - ca) * t) * (pixel.open * cover);
+                // What is seen through gaps between other strands lies in their shadow, finer than any grid shows.
+                let lit = if shaded { 0.35 + 0.65 * pixel.open } else { 1.0 };
+                pixel.light += (ca + (cb - ca) * t) * (pixel.open * cover * lit);
                 pixel.open *= 1.0 - cover;
                 self.closed += usize::from(pixel.open < CLOSED);
             }
@@ -237,7 +239,8 @@ impl Tile {
                 let mut sum = Vec3::ZERO;
                 for k in 0..ss * ss {
                     let p = self.pixels[(y * ss + k / ss) * self.edge + x * ss + k % ss];
-                    sum += p.light + canvas.background * p.open;
+                    sum +=
+                        if p.open < CLOSED { p.light / (1.0 - p.open) } else { p.light + canvas.background * p.open };
                 }
                 let mean = sum / (ss * ss) as f32;
                 out.push(fast::encode(canvas.background + (mean - canvas.background) * keep));

@@ -1,5 +1,7 @@
 //! Lines on their way to the picture: projected once, simplified to a fraction of a pixel, sorted into tiles.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -56,12 +58,15 @@ pub struct Vertex {
 }
 
 /// Simplified lines and which tiles they touch. Segment `i` joins the vertices `i` and `i + 1`.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Chunk {
     /// Which bundle.
     pub bundle: u32,
     /// Vertices, line after line.
     pub vertices: Vec<Vertex>,
+    /// Colours of the vertices as far as they are known: 10 bits per channel of the square root, and one that is always
+    /// set. Tiles that share a vertex find the same colour, so it does not matter which comes first.
+    colours: Vec<AtomicU32>,
     /// Segments, tile after tile.
     segments: Vec<u32>,
     /// Where each tile begins in `segments`, and the end.
@@ -69,6 +74,18 @@ pub struct Chunk {
 }
 
 impl Chunk {
+    /// The linear colour of a vertex, found by `shade` when it is asked for first. Channels are within 0..=1.
+    pub fn colour(&self, vertex: usize, shade: impl FnOnce() -> Vec3) -> Vec3 {
+        let mut bits = self.colours[vertex].load(Ordering::Relaxed);
+        if bits == 0 {
+            let c = shade().clamp(Vec3::ZERO, Vec3::ONE).map(f32::sqrt) * 1023.0 + Vec3::splat(0.5);
+            bits = 1 << 30 | (c.x as u32) << 20 | (c.y as u32) << 10 | c.z as u32;
+            self.colours[vertex].store(bits, Ordering::Relaxed);
+        }
+        let c = Vec3::new((bits >> 20 & 1023) as f32, (bits >> 10 & 1023) as f32, (bits & 1023) as f32) / 1023.0;
+        c * c
+    }
+
     /// Segments that touch a tile.
     pub fn segments(&self, tile: usize) -> &[u32] {
         &self.segments[self.starts[tile] as usize..self.starts[tile + 1] as usize]
@@ -214,5 +231,6 @@ fn sorted(bundle: u32, vertices: Vec<Vertex>, width: [f32; 2], tiles: Tiles) -> 
             next[tile] += 1;
         }
     }
-    Chunk { bundle, vertices, segments, starts }
+    let colours = vertices.iter().map(|_| AtomicU32::new(0)).collect();
+    Chunk { bundle, vertices, colours, segments, starts }
 }
