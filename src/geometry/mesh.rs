@@ -128,10 +128,7 @@ impl Mesh {
                 sums[weld[self.triangles[t][k] as usize] as usize] += n * angle;
             }
         }
-        self.normals = weld
-            .iter()
-            .map(|&w| sums[w as usize].try_normalize().unwrap_or(Vec3::Y))
-            .collect();
+        self.normals = weld.iter().map(|&w| sums[w as usize].try_normalize().unwrap_or(Vec3::Y)).collect();
     }
 
     /// For every vertex the first vertex at the very same position.

@@ -4,6 +4,7 @@
 
 pub mod bounds;
 pub mod bvh;
+pub mod curtain;
 pub mod curve;
 pub mod frames;
 pub mod mesh;
@@ -14,8 +15,9 @@ pub mod solid;
 pub mod strands;
 
 pub use bounds::Bounds;
-
+pub use bvh::{Bvh, Closest, Hit};
+pub use curtain::Curtain;
 pub use mesh::{Group, Mesh, MeshError};
 pub use obox::OrientedBox;
-
-pub use strands::{Root, Strands};
+pub use solid::{Solid, SolidError, SurfacePoint};
+pub use strands::{Root, Strands, StrandsError};

@@ -85,7 +85,8 @@ mod tests {
 
     #[test]
     fn inside_follows_the_axes() {
-        let b = OrientedBox::aligned(Vec3::X, Vec3::new(4.0, 1.0, 1.0)).rotated(Mat3::from_rotation_z(std::f32::consts::FRAC_PI_2));
+        let b = OrientedBox::aligned(Vec3::X, Vec3::new(4.0, 1.0, 1.0))
+            .rotated(Mat3::from_rotation_z(std::f32::consts::FRAC_PI_2));
         assert!(b.contains(Vec3::new(1.0, 1.9, 0.0)));
         assert!(!b.contains(Vec3::new(2.9, 0.0, 0.0)));
     }

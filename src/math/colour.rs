@@ -23,11 +23,7 @@ impl Colour {
 
     /// From `0xrrggbb`.
     pub const fn hex(rgb: u32) -> Self {
-        Self::new(
-            ((rgb >> 16) & 255) as f32 / 255.0,
-            ((rgb >> 8) & 255) as f32 / 255.0,
-            (rgb & 255) as f32 / 255.0,
-        )
+        Self::new(((rgb >> 16) & 255) as f32 / 255.0, ((rgb >> 8) & 255) as f32 / 255.0, (rgb & 255) as f32 / 255.0)
     }
 
     /// Reads `#rgb` or `#rrggbb`.

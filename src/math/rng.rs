@@ -17,9 +17,9 @@ impl Key {
     /// The key of a whole run: `seed` is what the user gives, `purpose` keeps two uses of one seed apart.
     pub fn new(seed: u64, purpose: &str) -> Self {
         // FNV-1a over the purpose's bytes: a fixed function, unlike the standard hasher.
-        let tag = purpose.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| {
-            (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3)
-        });
+        let tag = purpose
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3));
         Self(mix(seed ^ mix(tag)))
     }
 
@@ -53,11 +53,7 @@ impl Key {
 
     /// Three independent normal numbers.
     pub fn gaussian3(self) -> Vec3 {
-        Vec3::new(
-            self.with(11).gaussian(),
-            self.with(12).gaussian(),
-            self.with(13).gaussian(),
-        )
+        Vec3::new(self.with(11).gaussian(), self.with(12).gaussian(), self.with(13).gaussian())
     }
 
     /// Uniform on the unit sphere.

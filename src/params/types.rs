@@ -45,7 +45,8 @@ fn number(value: &Value, reader: &mut Reader) -> Option<f64> {
 fn integer(value: &Value, reader: &mut Reader, lo: f64, hi: f64) -> Option<f64> {
     let n = number(value, reader)?;
     if n.fract() != 0.0 {
-        return reader.problem(format!("`{n}` is not a whole number"), Some(format!("write {} or {}", n.floor(), n.ceil())));
+        return reader
+            .problem(format!("`{n}` is not a whole number"), Some(format!("write {} or {}", n.floor(), n.ceil())));
     }
     if n < lo || n > hi {
         return reader.problem(format!("`{n}` is out of range"), Some(format!("it takes {lo} to {hi}")));
@@ -154,7 +155,10 @@ impl FieldType for Vec3 {
                 return reader.problem(format!("expected three numbers, got {}: `{value}`", t.items.len()), None);
             }
             Value::Table(t) if ["x", "y", "z"].iter().any(|k| t.fields.contains_key(*k)) => {
-                return reader.problem(format!("expected {{ x, y, z }}, got `{value}`"), Some("leave out the names: { 0, 1, 0 }".into()));
+                return reader.problem(
+                    format!("expected {{ x, y, z }}, got `{value}`"),
+                    Some("leave out the names: { 0, 1, 0 }".into()),
+                );
             }
             other => return reader.wrong_type("{ x, y, z } or a vector", other),
         };
@@ -175,7 +179,8 @@ impl FieldType for Direction {
         let largest = v.abs().max_element();
         match (v / largest).try_normalize() {
             Some(unit) if largest > 0.0 => Some(Self(unit)),
-            _ => reader.problem("a direction of length zero", Some("give it at least one component that is not 0".into())),
+            _ => reader
+                .problem("a direction of length zero", Some("give it at least one component that is not 0".into())),
         }
     }
     fn show(&self) -> String {
@@ -190,12 +195,16 @@ impl FieldType for Colour {
     fn read(value: &Value, reader: &mut Reader) -> Option<Self> {
         if let Value::Text(text) = value {
             return Self::parse(text).or_else(|| {
-                reader.problem(format!("`\"{text}\"` is not a colour"), Some("write \"#rrggbb\", as in \"#3b2417\", or { r, g, b } with 0 to 1".into()))
+                reader.problem(
+                    format!("`\"{text}\"` is not a colour"),
+                    Some("write \"#rrggbb\", as in \"#3b2417\", or { r, g, b } with 0 to 1".into()),
+                )
             });
         }
         let v = Vec3::read(value, reader)?;
         if v.min_element() < 0.0 || v.max_element() > 1.0 {
-            let hint = (v.max_element() > 1.0).then(|| "channels go from 0 to 1; divide by 255, or write \"#rrggbb\"".into());
+            let hint =
+                (v.max_element() > 1.0).then(|| "channels go from 0 to 1; divide by 255, or write \"#rrggbb\"".into());
             return reader.problem(format!("`{value}` is not a colour"), hint);
         }
         Some(Self::new(v.x, v.y, v.z))
@@ -272,7 +281,10 @@ impl<T: FieldType> FieldType for Vec<T> {
     fn read(value: &Value, reader: &mut Reader) -> Option<Self> {
         let Value::Table(table) = value else { return reader.wrong_type("a list", value) };
         if let Some(key) = table.fields.keys().next() {
-            return reader.problem(format!("expected a list, got a table with the field `{key}`"), Some("write { a, b }, without names".into()));
+            return reader.problem(
+                format!("expected a list, got a table with the field `{key}`"),
+                Some("write { a, b }, without names".into()),
+            );
         }
         let read: Vec<Option<T>> = table
             .items
@@ -328,7 +340,11 @@ mod tests {
 
     #[test]
     fn a_good_table_reads() {
-        let t = table(&[("length", Value::Number(3.0)), ("turn", Value::Number(90.0)), ("direction", list(&[0.0, 2e30, 0.0]))]);
+        let t = table(&[
+            ("length", Value::Number(3.0)),
+            ("turn", Value::Number(90.0)),
+            ("direction", list(&[0.0, 2e30, 0.0])),
+        ]);
         let s = read::<Sample>(&t).unwrap();
         assert_eq!((s.length, s.way, s.direction.0), (3.0, Way::Down, Vec3::Y));
         assert_eq!(s.turn.unwrap().radians, std::f32::consts::FRAC_PI_2);
@@ -345,16 +361,21 @@ mod tests {
             ("lenth", Value::Number(1.0)),
         ]);
         let problems = read::<Sample>(&t).unwrap_err();
-        let lines: Vec<String> =
-            problems.iter().map(|p| format!("{}: {}: {}", p.path, p.message, p.hint.clone().unwrap_or_default())).collect();
-        assert_eq!(lines, [
-            ": unknown field `lenth`: did you mean `length`?",
-            "length: expected a number, got a string `\"45cm\"`: write the number without quotes or unit: 45",
-            "way: `\"dwn\"` is not one of the choices: did you mean \"down\"?",
-            "direction: a direction of length zero: give it at least one component that is not 0",
-            "turn: `91` is out of range: it takes -90 to 90 degrees",
-            "list[2]: expected a number, got a boolean `true`: ",
-        ]);
+        let lines: Vec<String> = problems
+            .iter()
+            .map(|p| format!("{}: {}: {}", p.path, p.message, p.hint.clone().unwrap_or_default()))
+            .collect();
+        assert_eq!(
+            lines,
+            [
+                ": unknown field `lenth`: did you mean `length`?",
+                "length: expected a number, got a string `\"45cm\"`: write the number without quotes or unit: 45",
+                "way: `\"dwn\"` is not one of the choices: did you mean \"down\"?",
+                "direction: a direction of length zero: give it at least one component that is not 0",
+                "turn: `91` is out of range: it takes -90 to 90 degrees",
+                "list[2]: expected a number, got a boolean `true`: ",
+            ]
+        );
     }
 
     #[test]
