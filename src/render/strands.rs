@@ -49,10 +49,10 @@ pub enum Ink<'a> {
 pub struct Vertex {
     /// Pixels and depth.
     pub at: Vec3,
+    /// Where along its line, 0 first node to 1 last.
+    pub along: f32,
     /// Node of the bundle at or before it.
     pub node: u32,
-    /// Fraction of the way to the next node.
-    pub part: f32,
     /// Line of the bundle.
     pub line: u32,
 }
@@ -84,6 +84,15 @@ impl Chunk {
         }
         let c = Vec3::new((bits >> 20 & 1023) as f32, (bits >> 10 & 1023) as f32, (bits & 1023) as f32) / 1023.0;
         c * c
+    }
+
+    /// The direction of the line at a vertex, in pixels and depth, from its neighbours.
+    pub fn direction(&self, vertex: usize) -> Vec3 {
+        let here = &self.vertices[vertex];
+        let beside = |k: Option<usize>| {
+            k.and_then(|k| self.vertices.get(k)).filter(|v| v.line == here.line).map_or(here.at, |v| v.at)
+        };
+        beside(Some(vertex + 1)) - beside(vertex.checked_sub(1))
     }
 
     /// Segments that touch a tile.
@@ -164,7 +173,13 @@ fn simplify(bundle: &Bundle, line: usize, camera: &Camera, nodes: &mut Vec<Vec3>
     if nodes.len() < 2 || outside || nodes.iter().any(|p| !p.is_finite()) {
         return;
     }
-    let vertex = |at, k: usize, part| Vertex { at, node: (first + k) as u32, part, line: line as u32 };
+    let last = (nodes.len() - 1) as f32;
+    let vertex = |at, k: usize, part: f32| Vertex {
+        at,
+        along: (k as f32 + part) / last,
+        node: (first + k) as u32,
+        line: line as u32,
+    };
     out.push(vertex(nodes[0], 0, 0.0));
     let mut i = 0;
     while i + 1 < nodes.len() {
