@@ -192,6 +192,7 @@ fn wrong_obj_lines_are_named() {
         ("f", "line 5: a face needs 3 corners, got `0`"),
         ("f 0 1 2", "line 5: `0` names vertex 0; OBJ counts from 1"),
         ("f 1 2 9", "line 5: `9` names vertex 9, but there are only 4"),
+        ("g a b c d e f g h i j k l m n o p q", "line 5: `17` groups at once: the limit is 16"),
         ("f 1/1 2/1 3/1", "line 5: `1/1` names uv 1, but there are only 0"),
         ("f 1//1 2//7 3//1\nvn 0 0 1", "line 5: `2//7` names normal 7, but there are only 1"),
         (
@@ -440,6 +441,19 @@ fn wrong_gltf_values_are_named() {
 
 #[test]
 fn a_small_file_cannot_unfold_without_end() {
+    // A sparse accessor over nothing.
+    let bare = Glb::sparse()
+        .replace("\"bufferView\":0,\"componentType\":5126,\"count\":4", "\"componentType\":5126,\"count\":9000000");
+    assert_eq!(refusal("a.glb", &bare.bytes(), &options()), "`9000000` entries in accessors[0]: the limit is 1048576");
+    // A mesh of 100 000 triangles at the end of a chain of named nodes.
+    let mut chain = String::new();
+    for n in 0..2000 {
+        chain += &format!("{{\"name\":\"n{n}\",\"children\":[{}]}},", n + 1);
+    }
+    let deep = Glb::square(6, Some(&[0, 1, 2].repeat(33_334)))
+        .replace("\"nodes\":[{\"mesh\"", &format!("\"nodes\":[{chain}{{\"mesh\""));
+    assert!(refusal("a.glb", &deep.bytes(), &options()).ends_with("triangles in groups: the limit is 100000000"));
+
     // 100 000 corners from 12 bytes by a fan over one index, shown by a thousand nodes.
     let mut glb = Glb::square(6, Some(&vec![0_u32; 100_000]));
     let nodes = "{\"mesh\":0},".repeat(999);

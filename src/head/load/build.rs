@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
 
-use super::LoadError;
+use super::{LoadError, MAX_NAMED};
 use crate::geometry::{Group, Mesh};
 use crate::task::{Warned, Warning};
 
@@ -26,6 +26,8 @@ pub(super) struct Parts {
     pub groups: Vec<Group>,
     /// The number of each group.
     pub by_name: BTreeMap<String, usize>,
+    /// How many triangles all groups hold together.
+    pub named: u64,
     /// Points and lines that were left out.
     pub ignored: usize,
     /// In the order they were met.
@@ -41,6 +43,23 @@ impl Parts {
         self.groups.push(Group { name: name.to_owned(), triangles: Vec::new() });
         self.by_name.insert(name.to_owned(), self.groups.len() - 1);
         self.groups.len() - 1
+    }
+
+    /// Puts all triangles from `since` on into a group.
+    ///
+    /// # Errors
+    /// [`LoadError::TooMuch`] when a file of many names and triangles would unfold without end.
+    pub fn enlist(&mut self, group: usize, since: usize) -> Result<(), LoadError> {
+        let triangles = &mut self.groups[group].triangles;
+        // A node, its mesh or a node below may carry the same name.
+        let first = triangles.partition_point(|&t| (t as usize) < since);
+        self.named += (self.triangles.len() - since - (triangles.len() - first)) as u64;
+        if self.named > MAX_NAMED {
+            return Err(LoadError::TooMuch { what: "triangles in groups".into(), count: self.named, limit: MAX_NAMED });
+        }
+        triangles.truncate(first);
+        triangles.extend(since as u32..self.triangles.len() as u32);
+        Ok(())
     }
 
     /// A clean mesh: chosen groups only, turned and scaled to cm, without flat triangles and unused vertices.

@@ -150,6 +150,14 @@ pub enum ObjProblem {
     /// A corner is not `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     #[error("`{0}` is not a corner of a face")]
     Corner(String),
+    /// One `g` line names a crowd of groups.
+    #[error("`{got}` groups at once: the limit is {limit}")]
+    Names {
+        /// How many names.
+        got: usize,
+        /// How many there may be.
+        limit: usize,
+    },
     /// Indices start at 1.
     #[error("`{0}` names vertex 0")]
     Zero(String),
@@ -260,6 +268,7 @@ impl ObjProblem {
             Self::NotANumber(_)
             | Self::NotFinite(_)
             | Self::TooFew { .. }
+            | Self::Names { .. }
             | Self::Corners(_)
             | Self::OutOfRange { .. } => {
                 return None;

@@ -11,7 +11,7 @@ use gltf::mesh::{Mode, Semantic};
 
 use super::build::Parts;
 use super::guard::{self, problem};
-use super::{GltfProblem, LoadError, MAX_VERTICES, Siblings, barrier, container, skin};
+use super::{GltfProblem, LoadError, MAX_BYTES, MAX_VERTICES, Siblings, barrier, container, skin};
 use crate::task::Warning;
 
 /// The bytes of the buffers that geometry lies in; the others are empty.
@@ -53,6 +53,7 @@ pub(super) fn read(bytes: &[u8], siblings: &dyn Siblings) -> Result<Parts, LoadE
 /// Fetches every buffer that geometry lies in.
 fn fill<'a>(root: &guard::Root, blob: Option<&'a [u8]>, siblings: &dyn Siblings) -> Result<Buffers<'a>, LoadError> {
     let mut buffers = Vec::with_capacity(root.buffers.len());
+    let mut total = 0;
     for (b, buffer) in root.buffers.iter().enumerate() {
         let bytes = match (&buffer.uri, blob) {
             _ if !root.is_used[b] => Cow::Borrowed(&[][..]),
@@ -64,6 +65,10 @@ fn fill<'a>(root: &guard::Root, blob: Option<&'a [u8]>, siblings: &dyn Siblings)
             let what = buffer.uri.as_deref().filter(|u| u.len() < 60 && !u.starts_with("data:")).unwrap_or("its data");
             let (what, end, length) = (what.to_owned(), buffer.byte_length, bytes.len() as u64);
             return Err(problem(format!("buffers[{b}]"), GltfProblem::Range { what, end, length }));
+        }
+        total += bytes.len() as u64;
+        if total > MAX_BYTES {
+            return Err(LoadError::TooMuch { what: "bytes in buffers".into(), count: total, limit: MAX_BYTES });
         }
         buffers.push(bytes);
     }
@@ -93,6 +98,7 @@ impl Reader<'_> {
         }
         let roots: Vec<usize> = (0..nodes.len()).filter(|&n| !is_child[n]).collect();
         let globals = place(&nodes, &roots)?;
+        let skins: Vec<Vec<DMat4>> = document.skins().map(|s| skin::joints(&s, &globals, self.buffers)).collect();
         let scene = document.default_scene().or_else(|| document.scenes().next());
         let shown = scene.map_or(roots, |s| s.nodes().map(|n| n.index()).collect());
 
@@ -104,9 +110,9 @@ impl Reader<'_> {
                     open.extend(
                         nodes[n].children().map(|c| Step::Enter(c.index())).collect::<Vec<_>>().into_iter().rev(),
                     );
-                    self.node(&nodes[n], &globals)?;
+                    self.node(&nodes[n], &globals, &skins)?;
                 }
-                Step::Leave(n, since) => self.name(nodes[n].name(), since),
+                Step::Leave(n, since) => self.name(nodes[n].name(), since)?,
             }
         }
         if nodes.is_empty() && document.meshes().len() > 0 {
@@ -123,20 +129,18 @@ impl Reader<'_> {
     }
 
     /// Puts all triangles from `since` on into the group of that name.
-    fn name(&mut self, name: Option<&str>, since: usize) {
-        let Some(name) = name.filter(|name| !name.is_empty() && since < self.parts.triangles.len()) else { return };
+    fn name(&mut self, name: Option<&str>, since: usize) -> Result<(), LoadError> {
+        let Some(name) = name.filter(|name| !name.is_empty() && since < self.parts.triangles.len()) else {
+            return Ok(());
+        };
         let group = self.parts.group(name);
-        let triangles = &mut self.parts.groups[group].triangles;
-        // A node, its mesh or a node below may carry the same name.
-        let first = triangles.partition_point(|&t| (t as usize) < since);
-        triangles.truncate(first);
-        triangles.extend(since as u32..self.parts.triangles.len() as u32);
+        self.parts.enlist(group, since)
     }
 
-    fn node(&mut self, node: &gltf::Node<'_>, globals: &[DMat4]) -> Result<(), LoadError> {
+    fn node(&mut self, node: &gltf::Node<'_>, globals: &[DMat4], skins: &[Vec<DMat4>]) -> Result<(), LoadError> {
         let Some(mesh) = node.mesh() else { return Ok(()) };
-        let joints = node.skin().map(|s| skin::joints(&s, globals, self.buffers));
-        self.mesh(&mesh, globals[node.index()], joints.as_deref())
+        let joints = node.skin().map(|s| skins[s.index()].as_slice());
+        self.mesh(&mesh, globals[node.index()], joints)
     }
 
     fn mesh(&mut self, mesh: &gltf::Mesh<'_>, global: DMat4, joints: Option<&[DMat4]>) -> Result<(), LoadError> {
@@ -144,10 +148,9 @@ impl Reader<'_> {
         for primitive in mesh.primitives() {
             let first = self.parts.triangles.len();
             self.primitive(&primitive, global, joints, PrimitivePath(mesh.index(), primitive.index()))?;
-            self.name(primitive.material().name(), first);
+            self.name(primitive.material().name(), first)?;
         }
-        self.name(mesh.name(), since);
-        Ok(())
+        self.name(mesh.name(), since)
     }
 
     fn primitive(

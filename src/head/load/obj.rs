@@ -5,6 +5,7 @@
 //! one kind of corner throughout) and read by `tobj`, which then cannot fail.
 
 use std::io::Write;
+use std::rc::Rc;
 
 use glam::{Vec2, Vec3};
 
@@ -15,6 +16,9 @@ use crate::task::Warning;
 
 /// The most corners a face may have: cutting takes the square of it.
 const MAX_CORNERS: usize = 4096;
+
+/// The most groups a face may be in, and the most letters of a name that are kept.
+const MAX_NAMES: (usize, usize) = (16, 256);
 
 /// A face's corners and names.
 struct Face {
@@ -43,10 +47,10 @@ struct Scan {
     corners: Vec<Corner>,
     faces: Vec<Face>,
     /// Each distinct run of object, groups and material.
-    names: Vec<Vec<String>>,
-    object: Option<String>,
-    groups: Vec<String>,
-    material: Option<String>,
+    names: Vec<Vec<Rc<str>>>,
+    object: Option<Rc<str>>,
+    groups: Vec<Rc<str>>,
+    material: Option<Rc<str>>,
     is_renamed: bool,
     ignored: usize,
     /// Free-form curves and surfaces.
@@ -119,6 +123,12 @@ fn short(text: &str) -> String {
     if text.chars().count() <= 40 { text.to_owned() } else { text.chars().take(37).chain("...".chars()).collect() }
 }
 
+/// A name, if there is one, of sensible length.
+fn name(text: &str) -> Option<Rc<str>> {
+    let end = text.char_indices().nth(MAX_NAMES.1).map_or(text.len(), |(at, _)| at);
+    (end > 0).then(|| Rc::from(&text[..end]))
+}
+
 impl Scan {
     fn line(&mut self, text: &str, line: usize) -> Result<(), ObjProblem> {
         // A `#` within a word belongs to it: `usemtl skin#2`, or the `1.#IND` that old programs write for NaN.
@@ -137,9 +147,15 @@ impl Scan {
             "vt" => self.numbers("vt", 1, 1, 2, words)?,
             "vn" => self.numbers("vn", 2, 3, 3, words)?,
             "f" | "fo" => self.face(words, line)?,
-            "o" => self.rename(|s| s.object = Some(rest.to_owned()).filter(|r| !r.is_empty())),
-            "g" => self.rename(|s| s.groups = rest.split_ascii_whitespace().map(str::to_owned).collect()),
-            "usemtl" => self.rename(|s| s.material = Some(rest.to_owned()).filter(|r| !r.is_empty())),
+            "o" => self.rename(|s| s.object = name(rest)),
+            "g" => {
+                let groups: Vec<Rc<str>> = words.filter_map(name).collect();
+                if groups.len() > MAX_NAMES.0 {
+                    return Err(ObjProblem::Names { got: groups.len(), limit: MAX_NAMES.0 });
+                }
+                self.rename(|s| s.groups = groups);
+            }
+            "usemtl" => self.rename(|s| s.material = name(rest)),
             "p" | "l" => self.ignored += 1,
             "curv" | "curv2" | "surf" => self.free_form += 1,
             "s" | "mtllib" | "usemap" | "maplib" | "vp" | "cstype" | "deg" | "bmat" | "step" | "parm" | "trim"
@@ -292,11 +308,12 @@ impl Scan {
             indices = rest;
             corners.clear();
             corners.extend(polygon.iter().map(|&v| parts.positions[v as usize]));
+            let first = parts.triangles.len();
             for triangle in polygon::triangulate(&corners) {
-                for &group in &numbers[face.names] {
-                    parts.groups[group].triangles.push(parts.triangles.len() as u32);
-                }
                 parts.triangles.push(triangle.map(|k| polygon[k as usize]));
+            }
+            for &group in &numbers[face.names] {
+                parts.enlist(group, first)?;
             }
         }
         Ok(parts)
