@@ -452,7 +452,7 @@ fn a_small_file_cannot_unfold_without_end() {
     }
     let deep = Glb::square(6, Some(&[0, 1, 2].repeat(33_334)))
         .replace("\"nodes\":[{\"mesh\"", &format!("\"nodes\":[{chain}{{\"mesh\""));
-    assert!(refusal("a.glb", &deep.bytes(), &options()).ends_with("triangles in groups: the limit is 100000000"));
+    assert!(refusal("a.glb", &deep.bytes(), &options()).ends_with("triangles in groups: the limit is 50000000"));
 
     // 100 000 corners from 12 bytes by a fan over one index, shown by a thousand nodes.
     let mut glb = Glb::square(6, Some(&vec![0_u32; 100_000]));

@@ -11,6 +11,7 @@ use gltf::mesh::{Mode, Semantic};
 
 use super::build::Parts;
 use super::guard::{self, problem};
+use super::schema::Root;
 use super::{GltfProblem, LoadError, MAX_BYTES, MAX_VERTICES, Siblings, barrier, container, skin};
 use crate::task::Warning;
 
@@ -51,7 +52,7 @@ pub(super) fn read(bytes: &[u8], siblings: &dyn Siblings) -> Result<Parts, LoadE
 }
 
 /// Fetches every buffer that geometry lies in.
-fn fill<'a>(root: &guard::Root, blob: Option<&'a [u8]>, siblings: &dyn Siblings) -> Result<Buffers<'a>, LoadError> {
+fn fill<'a>(root: &Root, blob: Option<&'a [u8]>, siblings: &dyn Siblings) -> Result<Buffers<'a>, LoadError> {
     let mut buffers = Vec::with_capacity(root.buffers.len());
     let mut total = 0;
     for (b, buffer) in root.buffers.iter().enumerate() {

@@ -23,6 +23,7 @@ mod error;
 mod gltf;
 mod guard;
 mod obj;
+mod schema;
 mod skin;
 mod unit;
 
@@ -41,7 +42,7 @@ pub const MAX_BYTES: u64 = 1 << 30;
 /// The most vertices and the most triangles a file may unfold to.
 pub const MAX_VERTICES: u64 = 20_000_000;
 /// The most triangles that all groups may hold together; a triangle counts once for each of its groups.
-const MAX_NAMED: u64 = 100_000_000;
+const MAX_NAMED: u64 = 50_000_000;
 
 /// A file that was read already.
 #[derive(Clone, Copy, Debug)]
