@@ -15,6 +15,8 @@ mod mask;
 mod parting;
 mod polygon;
 mod region;
+#[cfg(test)]
+mod region_tests;
 mod roots;
 mod sampled;
 mod scalp;
