@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 
 use crate::export::StrandForm;
+use crate::head::load::Unit;
 use crate::scene::{Background, View};
 
 /// Hairstyles that are written: runs a Lua script, draws its picture, exports its hair.
@@ -49,6 +50,9 @@ pub struct ScriptArguments {
     /// Head to style instead of the one that the script's `coif.head()` gives: OBJ, glTF or GLB
     #[arg(long, value_name = "FILE")]
     pub head: Option<PathBuf>,
+    /// What one unit of that head's file is, if not what its format says [mm, cm, dm, m, in, ft]
+    #[arg(long, value_name = "UNIT", requires = "head", value_parser = unit)]
+    pub head_unit: Option<Unit>,
     /// Let the script read below this folder too, besides its own; may be repeated
     #[arg(long, value_name = "DIR")]
     pub allow: Vec<PathBuf>,
@@ -144,6 +148,10 @@ fn background(text: &str) -> Result<Background, String> {
 
 fn view(text: &str) -> Result<View, String> {
     choice(text, View::TEXTS, View::parse)
+}
+
+fn unit(text: &str) -> Result<Unit, String> {
+    choice(text, Unit::TEXTS, Unit::parse)
 }
 
 fn form(text: &str) -> Result<StrandForm, String> {

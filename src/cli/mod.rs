@@ -116,6 +116,7 @@ fn script_options(arguments: &ScriptArguments) -> script::Options {
         set: arguments.set.iter().cloned().collect::<BTreeMap<_, _>>(),
         seed: arguments.seed,
         head: arguments.head.clone(),
+        head_unit: arguments.head_unit,
         allow: arguments.allow.clone(),
         time_limit: arguments.time_limit,
         ..script::Options::new(&arguments.script)

@@ -212,7 +212,8 @@ impl Natural {
             Shape::Table { offsets, .. } => {
                 check_value(format!("the number of offsets of {name}"), offsets.len() as f32, 1.0, 1e7)?;
                 for o in offsets.iter() {
-                    check_value(format!("an offset of {name}"), o.abs().max_element(), 0.0, 1e4)?;
+                    check_value(format!("an offset of {name}"), o.x, -1e4, 1e4)?;
+                    check_value(format!("an offset of {name}"), o.y, -1e4, 1e4)?;
                 }
             }
         }
