@@ -64,12 +64,12 @@ fn skull(p: Vec3) -> f32 {
     if p.y > 10.0 {
         return d;
     }
-    let jaw = -(p.y + 9.95) * 0.916 - (p.z - 8.0) * 0.40;
+    let jaw = -(p.y + 9.975) * 0.916 - (p.z - 8.0) * 0.40;
     let slice = squircle(p.x, p.z, curve(&SIDE, p.y), if p.z > 0.0 { curve(&FRONT, p.y) } else { curve(&BACK, p.y) });
     let face = meet(meet(slice, jaw, 1.4), p.y - 5.5, 3.0);
     d = join(d, face, 2.2);
     if near(p, d, at(0.0, -8.0, 5.0), 5.4) {
-        d = join(d, ellipsoid(p, at(0.0, -8.75, 7.2), at(2.1, 1.3, 1.75)), 1.2);
+        d = join(d, ellipsoid(p, at(0.0, -8.775, 7.2), at(2.1, 1.3, 1.75)), 1.2);
         // The floor of the mouth, so that chin and neck meet in no sharp corner.
         d = join(d, ellipsoid(p, at(0.0, -7.6, 3.6), at(3.4, 2.1, 4.2)), 1.6);
     }
