@@ -64,12 +64,12 @@ fn skull(p: Vec3) -> f32 {
     if p.y > 10.0 {
         return d;
     }
-    let jaw = -(p.y + 9.95) * 0.916 - (p.z - 8.0) * 0.40;
+    let jaw = -(p.y + 9.975) * 0.916 - (p.z - 8.0) * 0.40;
     let slice = squircle(p.x, p.z, curve(&SIDE, p.y), if p.z > 0.0 { curve(&FRONT, p.y) } else { curve(&BACK, p.y) });
     let face = meet(meet(slice, jaw, 1.4), p.y - 5.5, 3.0);
     d = join(d, face, 2.2);
     if near(p, d, at(0.0, -8.0, 5.0), 5.4) {
-        d = join(d, ellipsoid(p, at(0.0, -8.75, 7.2), at(2.1, 1.3, 1.75)), 1.2);
+        d = join(d, ellipsoid(p, at(0.0, -8.775, 7.2), at(2.1, 1.3, 1.75)), 1.2);
         // The floor of the mouth, so that chin and neck meet in no sharp corner.
         d = join(d, ellipsoid(p, at(0.0, -7.6, 3.6), at(3.4, 2.1, 4.2)), 1.6);
     }
@@ -115,7 +115,7 @@ fn nose(d: f32, p: Vec3) -> f32 {
     d = join(d, sphere(p, at(0.0, -2.2, 10.78), 0.68), 0.8);
     d = join(d, ellipsoid(p, at(1.02, -2.7, 9.75), at(0.52, 0.62, 1.1)), 0.9);
     d = join(d, ellipsoid(p, at(0.0, -3.0, 10.1), at(0.36, 0.42, 0.85)), 0.8);
-    carve(d, ellipsoid(p, at(0.56, -3.45, 10.1), at(0.3, 0.42, 0.5)), 0.4)
+    carve(d, ellipsoid(p, at(0.55, -3.5, 10.1), at(0.32, 0.42, 0.55)), 0.6)
 }
 
 /// Muzzle, philtrum and lips.
@@ -124,8 +124,7 @@ fn mouth(d: f32, p: Vec3) -> f32 {
     d = carve(d, tube(p, at(0.0, -4.0, 10.15), at(0.0, -4.7, 10.15), 0.12, 0.2), 1.0);
     let upper = bent_tube::<4>(p, [at(0.0, -5.1, 9.56), at(1.2, -4.88, 9.52), at(2.55, -5.6, 8.5)], [0.36, 0.4, 0.14]);
     let lower = bent_tube::<4>(p, [at(0.0, -6.08, 9.36), at(1.1, -6.2, 9.3), at(2.4, -5.72, 8.5)], [0.45, 0.44, 0.12]);
-    let line =
-        bent_tube::<4>(p, [at(0.0, -5.58, 9.95), at(1.1, -5.44, 9.85), at(2.75, -5.72, 8.8)], [0.13, 0.13, 0.16]);
+    let line = bent_tube::<4>(p, [at(0.0, -5.6, 9.84), at(1.1, -5.46, 9.74), at(2.75, -5.74, 8.75)], [0.2, 0.19, 0.17]);
     d = join(d, upper, 0.5);
     d = join(d, lower, 0.45);
     carve(d, line, 0.25)

@@ -232,7 +232,7 @@ fn landmarks_stand_as_on_a_head() {
 fn the_adult_has_the_measures_of_an_adult() {
     let mesh = mesh(Style::Adult);
     let height = mark(Style::Adult, "vertex").y - mark(Style::Adult, "chin").y;
-    assert!((height - 23.0).abs() < 0.1, "chin to vertex {height}");
+    assert!((height - 23.0).abs() < 0.02, "chin to vertex {height}");
     let skull: Vec<Vec3> = mesh.positions.iter().copied().filter(|p| p.y > 4.5).collect();
     let breadth = 2.0 * skull.iter().map(|p| p.x).fold(0.0, f32::max);
     assert!((breadth - 15.5).abs() < 0.4, "breadth {breadth}");
