@@ -225,8 +225,8 @@ impl Clear<'_> {
         let n = points.len();
         let (a, b) = (points[k - 2], points[k - 1]);
         let pieces = (n - k + 1) as f32;
-        for j in k - 1..n {
-            points[j] = a.lerp(b, (j - (k - 2)) as f32 / pieces);
+        for (j, p) in points[k - 1..].iter_mut().enumerate() {
+            *p = a.lerp(b, (j + 1) as f32 / pieces);
         }
         // With k = 2 the last segment is the root's own, whose inner part may touch the skin.
         if k == 2 {
