@@ -204,7 +204,7 @@ impl Worker {
         let mut local = Walk::new(local.0).noting(local.1);
         // Without any queue there is no domain to end the strand: it grows straight to its length.
         let is_bare = global.is_finished() && local.is_finished();
-        let (mut grown, mut stage) = (0.0, 0);
+        let (mut grown, mut stage, mut free) = (0.0, 0, 0.0);
         self.points.clear();
         self.stages.clear();
         self.points.push(v);
@@ -233,7 +233,7 @@ impl Worker {
                 Some(body) => {
                     let lift = if step == 0 { root.normal * body.margin.min(0.5 * h) } else { Vec3::ZERO };
                     let margin = body.margin.min(0.45 * h * (step + 1) as f32);
-                    body.step(v, v + lift, t, h, margin)
+                    body.step(v, v + lift, t, h, margin, &mut free)
                 }
                 None => (v + t * h, t),
             };
