@@ -1,27 +1,39 @@
--- ponytail.lua: gather to a tie at the back of the head, then fall in loose curls
+-- ponytail.lua: gathered to a tie at the back of the head, then falling in loose curls.
+-- The hairstyle of figure 5 (a, b) of the method's paper; ponytail_edit.lua is its quick edit.
+local looks = require "coif/looks"
+
 local p = coif.params {
-  length = { 45, min = 10, max = 80, unit = "cm", doc = "longest strand" },
-  tie    = { 1.2, min = 0.5, max = 3, unit = "cm", doc = "radius of the tie" },
+  length  = { 50, min = 25, max = 90, unit = "cm", doc = "longest strand" },
+  tie     = { 1.0, min = 0.5, max = 3, unit = "cm", doc = "radius of the tie" },
+  strands = { 40000, min = 1000, max = 200000, doc = "how many strands" },
 }
 
 local head = coif.head()
-local knot = head:at("occiput", { 0, 3, -4 })      -- a landmark plus an offset, in head space
+local tie  = head:at("occiput", { 0, 5.5, -2.2 })  -- a landmark plus an offset, in head space
 
-local function side(temple, sign)                  -- one local queue for each side
+-- A: a pair of gather domains for each side. The first draws the hair back, the second into the tie.
+local function side(sign)
   return coif.queue {
-    coif.domain.gather { priority = 2, core = head:at(temple, { sign, 2, -3 }), core_radius = 2 },
-    coif.domain.gather { priority = 1, core = knot, core_radius = p.tie, scatter = -0.5, direction = { 0, 0.4, -1 } },
+    coif.domain.gather { priority = 2, core = head:at("occiput", { 3 * sign, 5, 2 }), core_radius = 4 },
+    coif.domain.gather {
+      priority = 1, core = tie, core_radius = p.tie, scatter = -0.2, direction = { 0, 0.25, -1 },
+    },
   }
 end
 
-local guides = head:scalp():guides { count = 800, length = p.length, step = 0.5, stiffness = 3 }
-local hair = guides
-  :grow {
-    global = coif.queue { coif.domain.directional { box = head:box("behind"), direction = { 0, -1, -0.1 } } },
-    locals = { { where = function(root) return root.x >= 0 end, queue = side("left_temple", 1) },
-               { where = function(root) return root.x < 0 end,  queue = side("right_temple", -1) } },
-  }
-  :natural { coif.domain.curl { box = head:box("behind"), period = 6, radius = 0.6, smooth = 0.25 } }
-  :fill { strands = 40000, noise = 0.03 }
+-- U: behind the tie everything falls.
+local behind = coif.box { min = { -25, -100, -60 }, max = { 25, 30, tie.z - 0.5 } }
 
-return coif.scene { head, hair, views = { "front", "left", "back" } }
+local hair = head:scalp()
+  :guides { count = 800, length = p.length, length_variation = 0.25, stiffness = 1.5 }
+  :grow {
+    global = coif.queue { coif.domain.directional { box = behind, direction = { 0, -1, -0.06 }, strength = 0.6 } },
+    locals = {
+      { where = function(root) return root.x >= 0 end, queue = side(1) },
+      { where = function(root) return root.x < 0 end,  queue = side(-1) },
+    },
+  }
+  :natural { coif.domain.curl { box = behind, period = 11, radius = 0.5, radius_tip = 1.6, turn = "mirrored" } }
+  :fill { strands = p.strands, clump = 0.35, clump_start = 0.4, thickness = 0.6, material = looks.chestnut }
+
+return coif.scene { head, hair, views = { "front", "three-quarter", "left", "back" } }
