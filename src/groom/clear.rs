@@ -5,6 +5,8 @@
 //! strand's shape. What is still not clear then (folds, thin parts that a strand goes through) is laid again, node by
 //! node, sliding along the skin. What cannot be laid at all is cut.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::step::Body;
@@ -48,11 +50,14 @@ impl Clear<'_> {
         if points.len() < 2 {
             return Outcome::Stuck;
         }
+        let mut scan = 1..points.len();
         for _ in 0..Self::ROUNDS {
-            if !self.pushes(points, &mut scratch.push) {
-                return Outcome::Clear;
-            }
-            self.spread(points, scratch);
+            let Some(pushed) = self.pushes(points, scan, &mut scratch.push) else { return Outcome::Clear };
+            let lo = pushed.start.saturating_sub(Self::FOLLOW).max(1);
+            let hi = (pushed.end + Self::FOLLOW).min(points.len());
+            self.spread(points, lo..hi, scratch);
+            // Only what moved has to be looked at again, with the segment after it.
+            scan = lo..(hi + 1).min(points.len());
         }
         if self.is_clear(points) { Outcome::Clear } else { self.lay_again(points, &mut scratch.wanted) }
     }
@@ -62,92 +67,95 @@ impl Clear<'_> {
         self.body.margin.min((0.45 * k as f32 * points[0].distance(points[1])).max(0.002))
     }
 
-    /// Writes how far every node has to move; false when none has to.
-    fn pushes(&self, points: &[Vec3], push: &mut Vec<Vec3>) -> bool {
+    /// Writes how far the nodes of `scan` have to move, and says which do, if any; the rest of `push` is zero.
+    fn pushes(&self, points: &[Vec3], scan: Range<usize>, push: &mut Vec<Vec3>) -> Option<Range<usize>> {
         let solid = self.body.solid;
-        let mut any = false;
+        let mut pushed: Option<Range<usize>> = None;
         let mut at = |k: usize, by: Vec3| {
-            if !any {
-                any = true;
+            let range = pushed.get_or_insert_with(|| {
                 push.clear();
                 push.resize(points.len(), Vec3::ZERO);
-            }
+                k..k + 1
+            });
+            *range = range.start.min(k)..range.end.max(k + 1);
             if by.length_squared() > push[k].length_squared() {
                 push[k] = by;
             }
         };
-        let (mut clearance, mut was_inside) = (0.0_f32, false);
-        for k in 1..points.len() {
+        // Around the node before this one no surface is nearer than `free`.
+        let mut free = if scan.start > 1 { solid.clearance(points[scan.start - 1]).max(0.0) } else { 0.0 };
+        let mut was_inside = false;
+        for k in scan {
             let (a, b) = (points[k - 1], points[k]);
-            let before = clearance;
-            clearance = solid.clearance(b).max(0.0);
             let way = a.distance(b);
-            // Two balls free of the surface that together cover the segment.
-            if clearance >= self.body.margin && (k == 1 || before + clearance > way) {
-                was_inside = false;
+            // The distance falls by no more than the way: while it lasts, nothing needs to be asked.
+            if k > 1 && free - way >= self.body.margin {
+                free -= way;
+                continue;
+            }
+            let clearance = solid.clearance(b).max(0.0);
+            if clearance >= self.body.margin && (k == 1 || is_covered(solid, (a, free), (b, clearance), 2)) {
+                (free, was_inside) = (clearance, false);
                 continue;
             }
             let margin = self.margin_at(points, k);
-            let mut crosses = false;
-            let near = if k == 1 {
-                Some(solid.closest(b))
-            } else {
-                let middle = solid.closest_within((a + b) * 0.5, 0.5 * way + margin);
-                if middle.is_none() && !was_inside {
-                    // No surface near the segment, and it begins outside.
-                    continue;
-                }
-                crosses = middle.is_some_and(|m| m.distance <= 0.5 * way) && solid.segment_hit(a, b).is_some();
-                if crosses || was_inside { Some(solid.closest(b)) } else { solid.closest_within(b, margin) }
+            let reach = way.max(self.body.margin);
+            let mut near = if k == 1 { Some(solid.closest(b)) } else { solid.closest_within(b, reach) };
+            if near.is_none() && was_inside {
+                near = Some(solid.closest(b));
+            }
+            let Some(near) = near else {
+                // No surface as near as the last node: the way does not cross one.
+                free = reach;
+                continue;
             };
-            was_inside = near.is_some_and(|n| n.distance < 0.0);
-            if let Some(near) = near
-                && near.distance < 0.98 * margin
-            {
+            let crosses = k > 1 && free + near.distance.max(0.0) <= way && solid.segment_hit(a, b).is_some();
+            was_inside = near.distance < 0.0;
+            free = near.distance.max(0.0);
+            if near.distance < 0.98 * margin {
                 at(k, near.position + near.normal * margin - b);
             }
             if crosses {
                 // The deepest of a few places between the ends says how far both have to go.
-                let deepest = [0.2, 0.4, 0.6, 0.8]
-                    .map(|u| solid.closest(a.lerp(b, u)))
-                    .into_iter()
-                    .reduce(|x, y| if y.distance < x.distance { y } else { x });
-                if let Some(deepest) = deepest {
-                    let by = deepest.normal * (margin - deepest.distance.min(0.0));
-                    at(k, by);
-                    at(k - 1, by);
+                let mut deepest = near;
+                for u in [0.2, 0.4, 0.6, 0.8] {
+                    let s = solid.closest(a.lerp(b, u));
+                    if s.distance < deepest.distance {
+                        deepest = s;
+                    }
                 }
+                let by = deepest.normal * (margin - deepest.distance.min(0.0));
+                at(k, by);
+                at(k - 1, by);
             }
         }
-        any
+        pushed
     }
 
-    /// Moves the nodes by the pushes and their neighbours with them.
-    fn spread(&self, points: &mut [Vec3], scratch: &mut Scratch) {
-        let n = points.len();
+    /// Moves the nodes of `range` by the pushes of their neighbours.
+    fn spread(&self, points: &mut [Vec3], range: Range<usize>, scratch: &mut Scratch) {
         scratch.sum.clear();
-        scratch.sum.resize(n, (Vec3::ZERO, 0.0));
-        for k in 1..n {
+        scratch.sum.resize(range.len(), (Vec3::ZERO, 0.0));
+        for k in range.clone() {
             let by = scratch.push[k];
             if by == Vec3::ZERO {
                 continue;
             }
-            let (lo, hi) = (k.saturating_sub(Self::FOLLOW).max(1), (k + Self::FOLLOW).min(n - 1));
-            for j in lo..=hi {
+            let (lo, hi) = (k.saturating_sub(Self::FOLLOW).max(range.start), (k + Self::FOLLOW + 1).min(range.end));
+            for j in lo..hi {
                 let u = k.abs_diff(j) as f32 / (Self::FOLLOW + 1) as f32;
                 let weight = (1.0 - u * u) * (1.0 - u * u);
-                let sum = &mut scratch.sum[j];
+                let sum = &mut scratch.sum[j - range.start];
                 sum.0 += by * weight;
                 sum.1 += weight;
             }
         }
-        for k in 1..n {
-            let (sum, weight) = scratch.sum[k];
+        for (k, &(sum, weight)) in range.zip(&scratch.sum) {
             let smooth = sum / weight.max(1.0);
             let own = scratch.push[k];
             // A node that must move moves far enough along its own push, whatever its neighbours want.
-            let short = if own == Vec3::ZERO { Vec3::ZERO } else { own * (1.0 - smooth.dot(own) / own.length_squared()).max(0.0) };
-            points[k] += smooth + short;
+            let short = if own == Vec3::ZERO { 0.0 } else { (1.0 - smooth.dot(own) / own.length_squared()).max(0.0) };
+            points[k] += smooth + own * short;
         }
     }
 
@@ -179,7 +187,7 @@ impl Clear<'_> {
                 goal
             } else {
                 let t = (goal - v).try_normalize().unwrap_or(Vec3::NEG_Y);
-                self.body.step(v, v, t, h, margin).0
+                self.body.step(v, v, t, h, margin, &mut 0.0).0
             };
             if !end.is_finite() || !is_free(end) {
                 return Self::cut(points, k);
@@ -217,8 +225,8 @@ impl Clear<'_> {
         let n = points.len();
         let (a, b) = (points[k - 2], points[k - 1]);
         let pieces = (n - k + 1) as f32;
-        for j in k - 1..n {
-            points[j] = a.lerp(b, (j - (k - 2)) as f32 / pieces);
+        for (j, p) in points[k - 1..].iter_mut().enumerate() {
+            *p = a.lerp(b, (j + 1) as f32 / pieces);
         }
         // With k = 2 the last segment is the root's own, whose inner part may touch the skin.
         if k == 2 {
@@ -228,22 +236,38 @@ impl Clear<'_> {
     }
 }
 
+/// True when balls that are free of the surface cover the segment between two places with these clearances; looks at
+/// places between them, to the given depth.
+fn is_covered(solid: &Solid, a: (Vec3, f32), b: (Vec3, f32), depth: u32) -> bool {
+    let (way, reach) = (a.0.distance_squared(b.0), a.1 + b.1);
+    if reach * reach > way {
+        return true;
+    }
+    if depth == 0 {
+        return false;
+    }
+    let middle = (a.0 + b.0) * 0.5;
+    let clearance = solid.clearance(middle);
+    clearance > 0.0
+        && is_covered(solid, a, (middle, clearance), depth - 1)
+        && is_covered(solid, (middle, clearance), b, depth - 1)
+}
+
 /// True when a node of the strand beyond its root, or a segment beyond its first, is inside the body or crosses its
 /// surface.
 pub fn is_inside(solid: &Solid, points: &[Vec3]) -> bool {
-    let mut before = 0.0;
+    let mut free = 0.0;
     points.iter().enumerate().skip(1).any(|(k, &b)| {
-        let clearance = solid.clearance(b);
-        let covered = before + clearance.max(0.0);
-        before = clearance.max(0.0);
-        if clearance > 0.0 && k == 1 {
-            return false;
-        }
         let a = points[k - 1];
-        if clearance > 0.0 && covered > a.distance(b) {
+        let way = a.distance(b);
+        if k > 1 && free > way {
+            free -= way;
             return false;
         }
-        (clearance <= 0.0 && solid.contains(b)) || (k > 1 && solid.segment_hit(a, b).is_some())
+        let clearance = solid.clearance(b).max(0.0);
+        let before = std::mem::replace(&mut free, clearance);
+        (clearance == 0.0 && solid.contains(b))
+            || (k > 1 && !is_covered(solid, (a, before), (b, clearance), 2) && solid.segment_hit(a, b).is_some())
     })
 }
 

@@ -141,7 +141,11 @@ pub fn never_entered(domain: &Domain, index: usize, whose: &str, strands: &Stran
 
 fn nearest_node(region: &OrientedBox, strands: &Strands) -> (f32, Vec3) {
     let outside = |p: &Vec3| (region.to_local(*p).abs() - region.half).max(Vec3::ZERO).length();
-    strands.points.iter().map(|p| (outside(p), *p)).fold((f32::INFINITY, Vec3::ZERO), |a, b| if b.0 < a.0 { b } else { a })
+    strands
+        .points
+        .iter()
+        .map(|p| (outside(p), *p))
+        .fold((f32::INFINITY, Vec3::ZERO), |a, b| if b.0 < a.0 { b } else { a })
 }
 
 /// One thread's memory.
@@ -200,7 +204,7 @@ impl Worker {
         let mut local = Walk::new(local.0).noting(local.1);
         // Without any queue there is no domain to end the strand: it grows straight to its length.
         let is_bare = global.is_finished() && local.is_finished();
-        let (mut grown, mut stage) = (0.0, 0);
+        let (mut grown, mut stage, mut free) = (0.0, 0, 0.0);
         self.points.clear();
         self.stages.clear();
         self.points.push(v);
@@ -229,7 +233,7 @@ impl Worker {
                 Some(body) => {
                     let lift = if step == 0 { root.normal * body.margin.min(0.5 * h) } else { Vec3::ZERO };
                     let margin = body.margin.min(0.45 * h * (step + 1) as f32);
-                    body.step(v, v + lift, t, h, margin)
+                    body.step(v, v + lift, t, h, margin, &mut free)
                 }
                 None => (v + t * h, t),
             };

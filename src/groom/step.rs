@@ -21,12 +21,18 @@ impl Body<'_> {
     /// tangent that leads there. An end that would come into the body, or pass through a part of it, is moved out along
     /// the surface's normal; the tangent follows it and the step is taken again, so that the strand slides along the
     /// skin at its own pace instead of stalling. `start` is where the test of the way begins: a little above the skin
-    /// for the root.
-    pub fn step(&self, v: Vec3, start: Vec3, t: Vec3, h: f32, margin: f32) -> (Vec3, Vec3) {
-        let free = v + t * h;
-        if self.solid.clearance(free) >= h.max(margin) {
-            return (free, t);
+    /// for the root. `free` is a distance from `v` within which there is no surface, kept from step to step.
+    pub fn step(&self, v: Vec3, start: Vec3, t: Vec3, h: f32, margin: f32, free: &mut f32) -> (Vec3, Vec3) {
+        let straight = v + t * h;
+        *free -= h;
+        if *free >= margin {
+            return (straight, t);
         }
+        *free = self.solid.clearance(straight);
+        if *free >= h.max(margin) {
+            return (straight, t);
+        }
+        *free = 0.0;
         let mut tangent = t;
         let mut best = None;
         for turn in 0..Self::TURNS {

@@ -158,7 +158,7 @@ pub(super) fn detect(mesh: &Mesh, bvh: &Bvh) -> Result<Landmarks, HeadError> {
     let ear_z = (occiput.z + front.at(nose_y + 0.2 * height)) * 0.5 - 0.03 * height;
     // The neck's deepest hollow within the heights where hairlines end, behind the ears; a head without a neck has it
     // where it turns under.
-    let is_behind = |i: &usize| -back.depth[*i] < ear_z;
+    let is_behind = |i: &usize| -back.depth[*i] < ear_z + 0.45 * (occiput.z - ear_z);
     let under = |i: usize| back.depth[i] - back.y(i);
     let usual = chin.y + 0.08 * height;
     let hollow = |i: usize| back.depth[i] + 0.1 * (back.y(i) - usual).abs();

@@ -136,7 +136,7 @@ impl Region {
         Self::new(Shape::Everything)
     }
 
-    /// The natural hairline of a head: see `docs` of [`Head::scalp`].
+    /// See [`Head::scalp`].
     pub(super) fn natural(head: &Head) -> Self {
         let outline = Polygon::around(head.centre(), head.crown(), &scalp::outline(head), true);
         let scalp = outline.map_or_else(Self::everything, |p| Self::new(Shape::Polygon(p)));

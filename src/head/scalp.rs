@@ -44,18 +44,21 @@ fn side(head: &Head, sign: f32) -> Vec<Vec3> {
         let x = head.solid.bvh().first_hit(origin, Vec3::X * -sign, 1.2 * height).map(|h| h.position.x);
         Vec3::new(x.unwrap_or(ear.x), y, z)
     };
+    // From the temple the hairline slopes down to the sideburn, even where the ear reaches as high as the temple.
+    let upper = ((temple.y + top) * 0.5).min(temple.y - 0.035 * height);
+    let lower = top.min(temple.y - 0.07 * height);
     let half = temple.x.abs();
     let neck = marks.nape.y;
     vec![
         from_front(0.35 * half, forehead.y + 0.004 * height),
         // The corner between forehead and temple recedes a little.
         from_front(0.70 * half, forehead.y + 0.008 * height),
-        from_side((forehead.y + temple.y) * 0.5, temple.z - 0.01 * height),
+        from_side((forehead.y + temple.y) * 0.5, temple.z - 0.025 * height),
         temple,
-        from_side((temple.y + top) * 0.5, (temple.z + front) * 0.5 + 0.05 * height),
+        from_side(upper, (temple.z + front) * 0.5 + 0.05 * height),
         // Sideburn.
-        from_side(top, front + 0.075 * height),
-        from_side(middle + 0.03 * height, front + 0.07 * height),
+        from_side(lower, front + 0.075 * height),
+        from_side((middle + 0.03 * height).min(lower - 0.03 * height), front + 0.068 * height),
         from_side(middle - 0.01 * height, front + 0.03 * height),
         from_side(middle + 0.05 * height, front + 0.012 * height),
         // Over the ear and down behind it.

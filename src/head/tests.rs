@@ -222,3 +222,22 @@ fn places_and_boxes_follow_the_scale() {
     assert!((head.solid.signed_distance(out) - 2.0 * head.scale).abs() < 0.4 && out.z > 5.0, "{out}");
     assert!(head.point(std::f32::consts::FRAC_PI_2, 0.0, 0.0).x > 5.0);
 }
+
+#[test]
+fn the_mannequins_are_heads_and_their_shapes_tell_their_landmarks() {
+    for style in [mannequin::Style::Adult, mannequin::Style::Cartoon] {
+        let given = Head::mannequin(style).unwrap();
+        near(given.landmarks.between_ears(), Vec3::ZERO, 1e-4, "origin");
+        assert!(given.placement.translation.length() < 1e-3, "{}", given.placement.translation);
+        assert!(given.ears().iter().all(Option::is_some));
+        let scalp = given.scalp();
+        assert!(scalp.contains(&given, &given.closest(given.landmarks.vertex)));
+        assert!(!scalp.contains(&given, &given.closest(given.landmarks.chin)));
+        let found = head((*given.mesh).clone());
+        let back = found.placement;
+        for (name, (a, b)) in Landmarks::NAMES.iter().zip(found.landmarks.all().into_iter().zip(given.landmarks.all()))
+        {
+            near(back.transform_point3(a), b, 3.0, &format!("{name} of {}", style.text()));
+        }
+    }
+}

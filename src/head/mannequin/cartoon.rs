@@ -4,13 +4,13 @@ use glam::Vec3;
 
 use super::Form;
 use super::ear::Ear;
-use super::field::{bent_tube, carve, ellipsoid, join, meet, tube};
+use super::field::{bent_tube, carve, ellipsoid, join, meet, near, tube};
 use super::grid::{Ring, Zone};
 
 const EAR: Ear = Ear {
-    centre: Vec3::new(8.95, 0.35, -1.35),
-    axes: [Vec3::new(0.30, -0.12, -0.946), Vec3::new(0.09, 0.991, -0.097), Vec3::new(0.949, -0.056, 0.308)],
-    scale: 1.05,
+    centre: Vec3::new(9.2, 0.3, -1.35),
+    axes: [Vec3::new(0.2989, -0.1916, -0.9349), Vec3::new(0.2408, 0.9631, -0.1204), Vec3::new(0.9234, -0.1891, 0.334)],
+    scale: 0.98,
 };
 
 const fn at(x: f32, y: f32, z: f32) -> Vec3 {
@@ -21,12 +21,10 @@ fn distance(p: Vec3) -> f32 {
     let mut d = f32::MAX;
     if p.y > -13.0 {
         d = skull(p);
-        // Only what reaches here is worth its time: a blend changes nothing beyond its own reach.
-        let near = |d: f32, centre: Vec3, radius: f32| (p - centre).length() - radius < d.abs() + 2.0;
-        if near(d, at(3.9, 0.4, 7.6), 4.6) {
+        if near(p, d, at(3.9, 0.4, 7.6), 4.6) {
             d = eye(d, p);
         }
-        if near(d, at(0.0, -3.2, 8.6), 4.2) {
+        if near(p, d, at(0.0, -3.2, 8.6), 4.2) {
             d = nose_and_mouth(d, p);
         }
     }
@@ -43,16 +41,19 @@ fn skull(p: Vec3) -> f32 {
         return d;
     }
     d = join(d, ellipsoid(p, at(0.0, -2.0, 2.4), at(7.2, 5.2, 6.6)), 4.0);
-    d = join(d, ellipsoid(p, at(3.8, -2.9, 5.4), at(2.6, 2.3, 2.6)), 3.4);
-    join(d, ellipsoid(p, at(0.0, -5.4, 5.7), at(2.9, 2.25, 2.6)), 3.6)
+    if near(p, d, at(0.0, -3.8, 5.5), 8.2) {
+        d = join(d, ellipsoid(p, at(3.8, -2.9, 5.4), at(2.6, 2.3, 2.6)), 3.4);
+        d = join(d, ellipsoid(p, at(0.0, -5.4, 5.7), at(2.9, 2.25, 2.6)), 3.6);
+    }
+    d
 }
 
 /// Brow, shallow socket and a large closed eye.
 fn eye(d: f32, p: Vec3) -> f32 {
-    let brow = bent_tube::<4>(p, [at(1.4, 2.6, 9.1), at(3.9, 3.9, 9.0), at(6.6, 2.4, 6.6)], [0.3, 0.35, 0.2]);
+    let brow = bent_tube::<4>(p, [at(1.6, 3.0, 9.1), at(3.9, 4.2, 9.0), at(6.4, 2.8, 6.6)], [0.3, 0.35, 0.2]);
     let mut d = join(d, brow, 1.8);
     d = carve(d, ellipsoid(p, at(3.8, -0.1, 10.3), at(2.7, 2.4, 2.0)), 2.0);
-    let ball = ellipsoid(p, at(3.85, -0.3, 6.9), at(2.25, 2.05, 1.75));
+    let ball = ellipsoid(p, at(3.85, -0.25, 6.65), at(2.35, 2.1, 1.8));
     d = join(d, ball, 0.6);
     // The upper lid lies over the lower one, down to lashes in a calm curve.
     let off = p.x - 3.9;
@@ -65,9 +66,9 @@ fn nose_and_mouth(d: f32, p: Vec3) -> f32 {
     let mut d = join(d, tube(p, at(0.0, 0.3, 8.6), at(0.0, -1.9, 9.1), 0.35, 0.5), 1.6);
     d = join(d, ellipsoid(p, at(0.0, -2.3, 9.35), at(0.8, 0.65, 0.75)), 0.8);
     d = join(d, ellipsoid(p, at(0.7, -2.45, 8.95), at(0.5, 0.45, 0.6)), 0.6);
-    let upper = bent_tube::<4>(p, [at(0.0, -4.45, 8.75), at(0.7, -4.3, 8.7), at(1.45, -4.55, 8.3)], [0.24, 0.26, 0.1]);
-    let lower = bent_tube::<4>(p, [at(0.0, -5.1, 8.6), at(0.7, -5.1, 8.55), at(1.35, -4.68, 8.25)], [0.32, 0.3, 0.1]);
-    let line = bent_tube::<4>(p, [at(0.0, -4.78, 9.02), at(0.9, -4.78, 8.92), at(1.8, -4.48, 8.45)], [0.1, 0.1, 0.12]);
+    let upper = bent_tube::<4>(p, [at(0.0, -4.4, 8.82), at(0.8, -4.25, 8.78), at(1.5, -4.45, 8.35)], [0.24, 0.26, 0.1]);
+    let lower = bent_tube::<4>(p, [at(0.0, -5.15, 8.62), at(0.7, -5.15, 8.55), at(1.4, -4.7, 8.25)], [0.32, 0.3, 0.1]);
+    let line = bent_tube::<4>(p, [at(0.0, -4.8, 9.05), at(1.0, -4.85, 8.92), at(1.9, -4.35, 8.45)], [0.27, 0.25, 0.2]);
     d = join(d, upper, 0.5);
     d = join(d, lower, 0.5);
     carve(d, line, 0.3)
@@ -75,13 +76,13 @@ fn nose_and_mouth(d: f32, p: Vec3) -> f32 {
 
 /// Thin neck and narrow shoulders.
 fn trunk(d: f32, p: Vec3) -> f32 {
-    let mut d = join(d, tube(p, at(0.0, -2.0, -1.8), at(0.0, -13.5, -2.4), 3.4, 3.6), 2.4);
+    let mut d = join(d, tube(p, at(0.0, -2.0, -1.2), at(0.0, -13.5, -2.0), 3.4, 3.6), 2.4);
     if p.y > -3.0 {
         return d;
     }
     let slope = tube(at(p.x, p.y, p.z * 0.75), at(0.3, -9.9, -1.9), at(7.4, -13.8, -1.7), 1.4, 1.3);
     d = join(d, slope, 2.8);
-    d = join(d, ellipsoid(p, at(0.0, -17.4, -2.1), at(11.2, 5.4, 5.6)), 3.5);
+    d = join(d, ellipsoid(p, at(0.0, -16.4, -2.1), at(10.9, 4.8, 5.4)), 3.5);
     meet(d, -17.2 - p.y, 2.0)
 }
 
