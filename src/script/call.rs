@@ -236,6 +236,7 @@ impl Call<'_> {
 
     fn diagnostic(&self, severity: Severity, problem: Problem) -> Diagnostic {
         let Problem { path, message, hint } = problem;
+        let hint = hint.or_else(|| conversion(&message).map(ToOwned::to_owned));
         let mut diagnostic = Diagnostic { severity, ..Diagnostic::error(message) }.hint_opt(hint);
         let name = self.entry.name;
         diagnostic.label = Some(match path.as_str() {
@@ -299,4 +300,17 @@ impl Call<'_> {
             }
         }
     }
+}
+
+/// How to make what was wanted from what was given.
+fn conversion(message: &str) -> Option<&'static str> {
+    let (wanted, got) = message.strip_prefix("expected a ")?.split_once(", got a ")?;
+    let got = got.split(' ').next()?;
+    Some(match (wanted, got) {
+        ("Queue", "Domain" | "table") => "put domains into a queue: `coif.queue { a, b }`",
+        ("Domain", "Queue") => "give the domains themselves, without `coif.queue`",
+        ("Domain", "table") => "make it one: `coif.domain.directional { ... }`, or another kind",
+        ("Region", "Head") => "take a region of it: `head:scalp()`",
+        _ => return None,
+    })
 }

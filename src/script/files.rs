@@ -141,7 +141,7 @@ impl AccessError {
     pub fn hint(&self) -> Option<String> {
         match self {
             Self::Outside(path) => {
-                let folder = path.parent().unwrap_or(path);
+                let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
                 Some(format!("move it there, or allow its folder: `--allow {}`", folder.display()))
             }
             Self::Missing { nearest, .. } => nearest.as_ref().map(|n| format!("did you mean `{n}`?")),

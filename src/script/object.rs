@@ -51,6 +51,31 @@ fn method(lua: &Lua, entry: &'static registry::Entry) -> mlua::Result<mlua::Func
     Ok(function)
 }
 
+/// Signs between two values, and the methods they stand for.
+const OPERATORS: &[(MetaMethod, &str, &str)] =
+    &[(MetaMethod::Add, "+", "union"), (MetaMethod::Sub, "-", "minus"), (MetaMethod::Mul, "*", "intersect")];
+
+/// `a + b`, where the first has a method for it.
+fn operate(lua: &Lua, sign: &str, name: &str, a: mlua::Value, b: mlua::Value) -> mlua::Result<mlua::Value> {
+    let noun = |v: &mlua::Value| v.as_userdata().and_then(|u| u.borrow::<Held>().ok().and_then(|h| h.noun()));
+    let entry = noun(&a).and_then(|n| n.methods.iter().find(|m| m.short_name() == name));
+    match (entry, noun(&a), noun(&b)) {
+        (Some(entry), Some(one), Some(two)) if one.name == two.name => {
+            invoke(lua, &*session(lua)?, entry, mlua::MultiValue::from_vec(vec![a, b]))
+        }
+        (_, one, two) => {
+            let what = |noun: Option<&Noun>, value: &mlua::Value| match noun {
+                Some(noun) => format!("a {}", noun.name),
+                None if value.is_number() || value.is_integer() => "a number".to_owned(),
+                None => format!("a {}", value.type_name()),
+            };
+            let message = format!("`{sign}` does not go between {} and {}", what(one, &a), what(two, &b));
+            let hint = "it goes between two regions, between two vectors, or between numbers".to_owned();
+            Err(strict::raise(lua, &message, Some(hint), None))
+        }
+    }
+}
+
 impl UserData for Held {
     fn add_methods<M: UserDataMethods<Self>>(methods: &mut M) {
         methods.add_meta_method(MetaMethod::Index, |lua, this, key: mlua::Value| match key.as_string() {
@@ -62,6 +87,11 @@ impl UserData for Held {
             let hint = "every method gives a new value; nothing is changed in place";
             Err::<(), _>(strict::raise(lua, &message, Some(hint.into()), key.as_string().map(|k| k.to_string_lossy())))
         });
+        for (meta, sign, name) in OPERATORS {
+            methods.add_meta_function(*meta, move |lua, (a, b): (mlua::Value, mlua::Value)| {
+                operate(lua, sign, name, a, b)
+            });
+        }
         methods.add_meta_method(MetaMethod::ToString, |_, this, ()| {
             Ok(this.noun().map_or_else(|| format!("{:?}", this.0), |n| format!("<{}>", (n.text)(&this.0))))
         });

@@ -76,7 +76,8 @@ pub fn close(lua: &Lua) -> mlua::Result<()> {
             let hint = "a style is a pure function: no files, clock, processes or code made at run time";
             return Err(strict::raise(lua, &format!("`{key}` does not exist here"), Some(hint.into()), Some(key)));
         }
-        let names = strict::names(&table);
+        let mut names = strict::names(&table);
+        names.extend(strict::locals(lua));
         let hint = match crate::params::nearest(&key, names.iter().map(String::as_str)) {
             Some(name) => format!("did you mean `{name}`?"),
             None => format!("set it first: `local {key} = ...`"),

@@ -3,7 +3,7 @@
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
-use super::{Diagnostic, Severity, Sources};
+use super::{Diagnostic, Frame, Severity, Sources};
 
 /// Levels of a call trace that are worth a line each.
 const LONGEST_TRACE: usize = 8;
@@ -25,14 +25,15 @@ pub fn show(diagnostic: &Diagnostic, sources: &Sources, styled: bool) -> String 
             None => title.element(Origin::path(place.file.clone()).line(place.line)),
         },
     };
-    let trace = &diagnostic.trace;
-    for frame in trace.iter().take(LONGEST_TRACE) {
+    let trace = runs(&diagnostic.trace);
+    for (frame, times) in trace.iter().take(LONGEST_TRACE) {
         let what = match &frame.function {
             Some(name) => format!("in function `{name}`"),
             None => "in the body of the file".to_owned(),
         };
-        group = group
-            .element(Level::NOTE.with_name("called from").message(format!("{}:{} {what}", frame.file, frame.line)));
+        let times = if *times > 1 { format!(", {times} times or more") } else { String::new() };
+        let text = format!("{}:{} {what}{times}", frame.file, frame.line);
+        group = group.element(Level::NOTE.with_name("called from").message(text));
     }
     if trace.len() > LONGEST_TRACE {
         let more = trace.len() - LONGEST_TRACE;
@@ -44,6 +45,18 @@ pub fn show(diagnostic: &Diagnostic, sources: &Sources, styled: bool) -> String 
     let renderer = if styled { Renderer::styled() } else { Renderer::plain() };
     let style = if styled { DecorStyle::Unicode } else { DecorStyle::Ascii };
     renderer.decor_style(style).render(&[group])
+}
+
+/// Equal levels in a row as one, with their number.
+fn runs(trace: &[Frame]) -> Vec<(&Frame, usize)> {
+    let mut out: Vec<(&Frame, usize)> = vec![];
+    for frame in trace {
+        match out.last_mut() {
+            Some((last, times)) if *last == frame => *times += 1,
+            _ => out.push((frame, 1)),
+        }
+    }
+    out
 }
 
 /// Renders all of them, each followed by an empty line.

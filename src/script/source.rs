@@ -64,8 +64,14 @@ impl Sources {
         let Some(text) = self.text(file) else { return self.line(file, line) };
         let tokens: Vec<Token> = tokens(text).into_iter().filter(|t| t.kind != Kind::Blank).collect();
         let name = call.function.rsplit(['.', ':']).next().unwrap_or(call.function);
-        let calls = (0..tokens.len())
-            .filter(|&i| tokens[i].line == line && tokens[i].kind == Kind::Name && tokens[i].text == name);
+        let is_call = |i: usize| {
+            let after = tokens.get(i + 1);
+            tokens[i].kind == Kind::Name && after.is_some_and(|t| t.kind == Kind::Text || matches!(t.text, "(" | "{"))
+        };
+        // The name alone, without a call, is the second choice: it may be a variable of the same name.
+        let on_line = || (0..tokens.len()).filter(|&i| tokens[i].line == line && tokens[i].text == name);
+        let calls: Vec<usize> = on_line().filter(|&i| is_call(i)).collect();
+        let calls = if calls.is_empty() { on_line().collect() } else { calls };
         let mut best: Option<(bool, Range<usize>)> = None;
         for i in calls {
             let (is_whole, span) = descend(&tokens, i, call);

@@ -2,6 +2,7 @@
 
 use mlua::Lua;
 
+use super::lexer::{Kind, tokens};
 use super::session::{Raised, session};
 use super::trace;
 use super::{Diagnostic, Place};
@@ -40,6 +41,22 @@ pub fn names(table: &mlua::Table) -> Vec<String> {
         .filter_map(|(k, _)| Some(k.as_string()?.to_string_lossy()))
         .collect();
     names.sort();
+    names
+}
+
+/// The names that the running script gives anywhere to something of its own.
+pub fn locals(lua: &Lua) -> Vec<String> {
+    let (Ok(session), Some(top)) = (session(lua), trace::frames(lua, 0).into_iter().next()) else { return vec![] };
+    let sources = session.sources.borrow();
+    let Some(text) = sources.text(&top.file) else { return vec![] };
+    let words: Vec<_> = tokens(text).into_iter().filter(|t| t.kind != Kind::Blank).collect();
+    let mut names = vec![];
+    for (i, word) in words.iter().enumerate() {
+        if word.text == "local" || word.text == "function" || word.text == "for" {
+            let listed = words[i + 1..].iter().take_while(|w| w.text == "," || w.kind == Kind::Name);
+            names.extend(listed.filter(|w| w.kind == Kind::Name && w.text != "function").map(|w| w.text.to_owned()));
+        }
+    }
     names
 }
 

@@ -26,7 +26,7 @@ fn error(text: &str) -> String {
 
 /// What a script prints.
 fn log(text: &str) -> Vec<String> {
-    let outcome = script(&format!("{text}\nreturn coif.scene {{ }}"), &options(20.0));
+    let outcome = script(&format!("{text}\nreturn coif.scene {{ coif.head() }}"), &options(20.0));
     assert_eq!(outcome.ending, Ending::Done, "{text}: {:?}", outcome.diagnostics);
     outcome.log
 }
@@ -151,7 +151,9 @@ fn a_cancelled_run_says_nothing() {
 #[test]
 fn randomness_follows_the_seed_alone() {
     let text = "print(math.random(), math.random(10), math.random(-5, 5)) for i = 1, 50 do local n = math.random(3) assert(n >= 1 and n <= 3 and n % 1 == 0) end print(coif.seed)";
-    let with = |seed: u64| script(&format!("{text} return coif.scene {{}}"), &Options { seed, ..options(20.0) }).log;
+    let with = |seed: u64| {
+        script(&format!("{text} return coif.scene {{ coif.head() }}"), &Options { seed, ..options(20.0) }).log
+    };
     assert_eq!(with(1), with(1));
     assert_ne!(with(1)[0], with(2)[0]);
     assert_eq!(with(2)[1], "2");
@@ -176,7 +178,7 @@ fn printing_goes_to_the_log_and_is_bounded() {
 #[test]
 fn modules_are_loaded_once_and_recorded() {
     let files = Memory::default()
-        .with("style/a.lua", "local b = require 'lib/b' local c = require './lib/c' assert(require 'lib/b' == b) print(b.n, c) return coif.scene {}")
+        .with("style/a.lua", "local b = require 'lib/b' local c = require './lib/c' assert(require 'lib/b' == b) print(b.n, c) return coif.scene { coif.head() }")
         .with("style/lib/b.lua", "print 'once' return { n = 1, c = require './c' }")
         .with("style/lib/c.lua", "return 'c'");
     let outcome = run(&options(5.0), Arc::new(files), &Task::new());
@@ -205,7 +207,7 @@ fn parameters_are_declared_and_set() {
     let text =
         "local p = coif.params { n = { 3, min = 1, max = 5, integer = true, unit = 'cm', doc = 'how many' }, on = true,
         c = '#ffffff', way = { 'up', choices = { 'up', 'down' } }, at = { { 0, 1, 2 } } }
-        print(p.n, p.on, p.c, p.way, p.at.z)  return coif.scene {}";
+        print(p.n, p.on, p.c, p.way, p.at.z)  return coif.scene { coif.head() }";
     let with = |set: &[(&str, &str)]| {
         let set: BTreeMap<String, String> = set.iter().map(|&(k, v)| (k.into(), v.into())).collect();
         script(text, &Options { set, ..options(20.0) })

@@ -156,6 +156,14 @@ fn advice(message: &str) -> Option<String> {
     if message.starts_with("attempt to perform arithmetic") && message.contains("table") {
         return Some("only vectors can be calculated with: write vector.create(x, y, z) instead of { x, y, z }".into());
     }
+    if message.starts_with("attempt to index vector") {
+        return Some(
+            "a vector has x, y and z, which cannot be set: make a new one, as in `vector.create(0, v.y, v.z)`".into(),
+        );
+    }
+    if message.contains("readonly table") {
+        return Some("what Coif gives is never changed; copy what you need into a table of your own".into());
+    }
     if message.contains("stack overflow") {
         return Some("a function calls itself without end".into());
     }

@@ -1,1 +1,1 @@
-local scene = coif.scene { }
+local scene = coif.scene { coif.head() }

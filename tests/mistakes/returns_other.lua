@@ -1,1 +1,1 @@
-return { coif.scene { } }
+return { coif.scene { coif.head() } }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 
@@ -212,17 +212,29 @@ fn head(call: &Call) -> Result<Value> {
                 let hint = "name the file: `file = \"anna.glb\"`".to_owned();
                 return Err(call.problem_at(name, format!("`{name}` is about a file, but there is none"), Some(hint)));
             }
-            built_in(call, fields.style)?
+            return Ok(Value::Handle(Handle::new(built_in(call, fields.style)?)));
         }
     });
     call.session.heads.borrow_mut().insert(key, Arc::clone(&head));
     Ok(Value::Handle(Handle::new(head)))
 }
 
-fn built_in(call: &Call, style: Style) -> Result<Head> {
+/// A mannequin; made once per process, for it depends on nothing.
+fn built_in(call: &Call, style: Style) -> Result<Arc<Head>> {
+    static ADULT: OnceLock<Arc<Head>> = OnceLock::new();
+    static CARTOON: OnceLock<Arc<Head>> = OnceLock::new();
+    let made = match style {
+        Style::Adult => &ADULT,
+        Style::Cartoon => &CARTOON,
+    };
+    if let Some(head) = made.get() {
+        return Ok(Arc::clone(head));
+    }
     let places = mannequin::landmarks(style);
     let landmarks = places.iter().fold(Landmarks::from_all([Vec3::ZERO; 9]), |l, (name, p)| l.with(name, *p));
-    Head::with_landmarks(mannequin::mesh(style), "mannequin", landmarks).map_err(|e| head_error(call, "style", &e))
+    let head = Head::with_landmarks(mannequin::mesh(style), "mannequin", landmarks);
+    let head = Arc::new(head.map_err(|e| head_error(call, "style", &e))?);
+    Ok(Arc::clone(made.get_or_init(|| head)))
 }
 
 /// Loads a head; `path` is the field to blame.
@@ -243,7 +255,12 @@ fn from_file(
         LoadError::Axes { .. } => "forward",
         _ => path,
     };
-    let failed = |e: LoadError| call.problem_at(field(&e), format!("`{name}`: {e}"), e.hint());
+    let failed = |e: LoadError| {
+        let message = e.to_string();
+        // Some errors name the file themselves.
+        let message = if message.contains(&*name) { message } else { format!("`{name}`: {message}") };
+        call.problem_at(field(&e), message, e.hint())
+    };
     let loaded = load::load(&FileBytes { name: &name, bytes: &bytes }, options, &siblings).map_err(failed)?;
     let loaded = call.warned(loaded);
     load::check_head_size(loaded.mesh.bounds(), loaded.unit).map_err(failed)?;

@@ -1,0 +1,2 @@
+local head = coif.head()
+local guides = head:scalp():guides { count = 1e9 }

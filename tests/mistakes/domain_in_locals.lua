@@ -1,0 +1,8 @@
+local head = coif.head()
+local fall = coif.domain.directional { box = head:box("all"), direction = coif.down }
+local hair = head:scalp():guides { count = 5, length = 3 }:grow {
+  locals = {
+    { where = function(root) return root.x > 0 end, queue = fall },
+    { queue = coif.queue { fall } },
+  },
+}

@@ -1,0 +1,3 @@
+local head = coif.head()
+local nothing = head:scalp():where(function(place) return place.y > 100 end)
+local guides = nothing:guides { count = 10 }

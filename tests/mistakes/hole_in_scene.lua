@@ -1,0 +1,3 @@
+local head = coif.head()
+local fringe
+return coif.scene { fringe, head }

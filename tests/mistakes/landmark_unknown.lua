@@ -1,0 +1,2 @@
+local head = coif.head()
+local knot = head:at("temple", { 1, 2, -3 })

@@ -1,0 +1,2 @@
+local head = coif.head()
+local tie = coif.domain.gather { core_radius = 2 }

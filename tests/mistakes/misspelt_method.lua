@@ -1,0 +1,2 @@
+local head = coif.head()
+local guides = head:sclap():guides { count = 10 }

@@ -1,0 +1,1 @@
+local head = coif.head { "mannequin", style = "cartoonish" }

@@ -1,0 +1,2 @@
+local head = coif.head()
+local guides = head:scalp():guides { count = 0, length = -3 }

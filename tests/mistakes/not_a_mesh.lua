@@ -1,0 +1,1 @@
+local head = coif.head { file = "inner/bun.lua" }

@@ -1,0 +1,2 @@
+local head = coif.head()
+local more = head:scalp() + 3

@@ -1,0 +1,2 @@
+local head = coif.head()
+local hair = head:scalp():guides(800)

@@ -1,0 +1,2 @@
+local head = coif.head()
+local p = head:at("vertex", 0, 3, 0)

@@ -1,0 +1,2 @@
+local adult, child = coif.head(), coif.head { style = "cartoon" }
+local region = adult:scalp() - child:scalp()
