@@ -118,7 +118,7 @@ impl<'a> Studio<'a> {
             let light = lamp.colour;
             let sin_tl = (1.0 - tl * tl).max(0.0).sqrt();
             let facing = 0.5 + 0.5 * across.dot(l);
-            sum += albedo * deep(reach) * light * (sin_tl * (0.15 + 0.70 * facing));
+            sum += albedo * deep(reach) * light * (sin_tl * (0.10 + 0.70 * facing));
             if coat.shine <= 0.0 || reach < 0.004 {
                 continue;
             }
@@ -129,7 +129,7 @@ impl<'a> Studio<'a> {
                 let x = (tl + tv - shift - strand.shift) / width;
                 fast::exp(-0.5 * x * x)
             };
-            let primary = lobe(0.09, coat.width) * half * 0.22;
+            let primary = lobe(0.09, coat.width) * half * 0.30;
             let secondary = lobe(-0.14, 1.7 * coat.width) * half * half * 0.30;
             let through = lobe(0.0, 2.4 * coat.width) * fast::exp(-3.65 * cos_phi - 3.98) * 0.9;
             let shine = Vec3::splat(primary * strand.glint) + glow * secondary * strand.glint + glow * albedo * through;
@@ -140,22 +140,22 @@ impl<'a> Studio<'a> {
 
     /// Linear colour of a surface at `p` with the unit normal `n` turned to the viewer.
     pub fn surface(&self, material: &Skin, p: Vec3, n: Vec3) -> Vec3 {
-        let open = self.sky.skin.sample(p + n * (0.8 * self.sky.skin.cell()));
+        let open = self.sky.skin.sample_sky(p + n * (0.8 * self.sky.skin.cell()));
         let open = 0.25 * open.max(0.0).sqrt() + 0.75 * open;
-        let mut sum = material.albedo * SKY * (open * (0.72 + 0.28 * n.dot(self.up)));
+        let mut sum = material.albedo * SKY * (open * (0.66 + 0.30 * n.dot(self.up)));
         // Light that bounced inside the skin comes out redder and past the edge of the shadow.
         let wrap = Vec3::new(0.34, 0.20, 0.14);
         for lamp in &self.lamps {
             let nl = n.dot(lamp.toward);
             let hair = match &lamp.skin {
-                Some(grid) => grid.sample(p + (n + lamp.toward) * (0.5 * grid.cell())),
+                Some(grid) => grid.sample_toward(p + (n + lamp.toward) * (0.5 * grid.cell()), lamp.toward),
                 None => open,
             };
             let lit = nl > -0.34 && hair > 0.004;
             let reach = if !lit { 0.0 } else { hair * lamp.head.as_ref().map_or(1.0, |head| head.sample(p + n * 0.1)) };
             let soft = ((Vec3::splat(nl) + wrap) / (Vec3::ONE + wrap)).max(Vec3::ZERO);
             let reach_rgb = Vec3::new(reach.max(0.0).sqrt() * 0.35 + reach * 0.65, reach, reach);
-            sum += material.albedo * lamp.colour * soft * soft.map(f32::sqrt) * reach_rgb * 0.80;
+            sum += material.albedo * lamp.colour * soft * soft.map(f32::sqrt) * reach_rgb * 0.60;
             let h = (lamp.toward + self.toward).normalize_or_zero();
             let nh = n.dot(h).max(0.0);
             let fresnel = 0.03 + 0.5 * fast::exp(-6.0 * n.dot(self.toward).max(0.0));

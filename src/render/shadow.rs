@@ -79,6 +79,37 @@ impl Grid {
         a + (b - a) * f.x
     }
 
+    /// The transmittance at `p` of a grid made for the direction `to_light`: outside the grid nothing stands in the way,
+    /// so there it is that of the point where the way to the light enters the grid, and 1 where it passes by.
+    pub fn sample_toward(&self, p: Vec3, to_light: Vec3) -> f32 {
+        let far = Vec3::new(self.size[0] as f32 - 1.0, self.size[1] as f32 - 1.0, self.size[2] as f32 - 1.0);
+        let (lo, hi) = (self.origin, self.origin + far * self.cell);
+        if p.cmpge(lo).all() && p.cmple(hi).all() {
+            return self.sample(p);
+        }
+        let (mut enter, mut leave) = (0.0_f32, f32::INFINITY);
+        for k in 0..3 {
+            if to_light[k].abs() < 1e-6 {
+                if p[k] < lo[k] || p[k] > hi[k] {
+                    return 1.0;
+                }
+                continue;
+            }
+            let (a, b) = ((lo[k] - p[k]) / to_light[k], (hi[k] - p[k]) / to_light[k]);
+            enter = enter.max(a.min(b));
+            leave = leave.min(a.max(b));
+        }
+        if enter <= leave { self.sample(p + to_light * enter) } else { 1.0 }
+    }
+
+    /// The openness at `p`; outside the grid it rises to 1 within six cells.
+    pub fn sample_sky(&self, p: Vec3) -> f32 {
+        let far = Vec3::new(self.size[0] as f32 - 1.0, self.size[1] as f32 - 1.0, self.size[2] as f32 - 1.0);
+        let off = p.distance(p.max(self.origin).min(self.origin + far * self.cell));
+        let inside = self.sample(p);
+        inside + (1.0 - inside) * (off / (6.0 * self.cell)).min(1.0)
+    }
+
     /// Cells of this grid with the value of another at their middles.
     fn resampled(&self, other: &Self) -> Vec<f32> {
         let n = self.size;
@@ -486,6 +517,15 @@ mod tests {
         let steep = transmittance(&grid, Vec3::Y).sample(Vec3::new(0.0, -0.3, 0.0));
         let slant = transmittance(&grid, Vec3::new(0.5, 1.0, 0.3).normalize()).sample(Vec3::new(0.0, -0.3, 0.0));
         assert!(slant < 0.9 * steep, "{slant} {steep}");
+    }
+
+    #[test]
+    fn shadows_go_on_outside_the_grid() {
+        let light = transmittance(&slab(), Vec3::Y);
+        let under = light.sample_toward(Vec3::new(0.0, -40.0, 0.0), Vec3::Y);
+        assert!((under - light.sample(Vec3::new(0.0, -0.5, 0.0))).abs() < 1e-3);
+        assert_eq!(light.sample_toward(Vec3::new(50.0, -40.0, 0.0), Vec3::Y), 1.0);
+        assert!((light.sample_toward(Vec3::new(0.0, 40.0, 0.0), Vec3::Y) - 1.0).abs() < 1e-3);
     }
 
     #[test]
