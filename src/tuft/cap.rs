@@ -93,7 +93,8 @@ impl CapOptions {
             if on.distance.abs() > 0.1 * ground.scale {
                 let what = if i < n { format!("border point {}", i + 1) } else { "the crown".into() };
                 let far = on.distance.abs();
-                warnings.push(Warning::new(format!("{what} lies `{far:.2}` cm off the head; it was moved to the skin")));
+                warnings
+                    .push(Warning::new(format!("{what} lies `{far:.2}` cm off the head; it was moved to the skin")));
             }
             on_head.push(on.position);
         }
@@ -116,9 +117,8 @@ impl CapOptions {
     ) -> Mesh {
         let mut outer = Mesh { positions: sheet.to_vec(), triangles, ..Mesh::default() };
         // A border given the other way around is as good.
-        let facing: f32 = (0..outer.triangles.len())
-            .map(|t| outer.area_vector(t).dot(outer.corners(t)[0] - ground.reference))
-            .sum();
+        let facing: f32 =
+            (0..outer.triangles.len()).map(|t| outer.area_vector(t).dot(outer.corners(t)[0] - ground.reference)).sum();
         let turned = facing < 0.0;
         if turned {
             for t in &mut outer.triangles {

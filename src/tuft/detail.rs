@@ -102,8 +102,8 @@ impl Plan {
     fn part(&mut self, section: &Section) {
         let Some(split) = section.split else { return };
         let movable = usize::from(self.open_root)..self.rings.len() - usize::from(self.open_tip);
-        let nearest = movable
-            .min_by(|&a, &b| (self.rings[a] - split.from).abs().total_cmp(&(self.rings[b] - split.from).abs()));
+        let nearest =
+            movable.min_by(|&a, &b| (self.rings[a] - split.from).abs().total_cmp(&(self.rings[b] - split.from).abs()));
         match nearest {
             Some(i) => self.rings[i] = split.from,
             None => self.rings.insert(usize::from(self.open_root), split.from),
@@ -177,14 +177,7 @@ impl Refinement {
         let greatest = cuts.iter().fold((0.0_f32, 0.0_f32), |(w, h), c| (w.max(c.w), h.max(c.h)));
         let prong = split.map_or(0.0, |(at, tips)| (cuts[at].w / tips as f32).max(cuts[at].h));
         let bend = greatest.0 * section.bend.abs() * 0.25 + greatest.1 * section.bend.abs() * 0.5;
-        Self {
-            ends: Plan::ends(surface, 3),
-            places,
-            keys,
-            split,
-            round: (greatest.0.max(greatest.1), bend),
-            prong,
-        }
+        Self { ends: Plan::ends(surface, 3), places, keys, split, round: (greatest.0.max(greatest.1), bend), prong }
     }
 
     pub(super) fn plan(&self, tolerance: f32) -> Plan {

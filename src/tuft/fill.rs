@@ -101,8 +101,11 @@ pub fn fill(tufts: &[Tuft], options: &FillOptions, ground: &Ground) -> Result<Wa
     // Around: parents are the given tufts and those between them
     let mut parents: Vec<Tuft> = vec![tufts[0].clone()];
     let mut made: Vec<Tuft> = Vec::new();
-    let pairs: Vec<(&Tuft, &Tuft)> =
-        if tufts.len() == 1 { vec![(&tufts[0], &tufts[0])] } else { tufts.windows(2).map(|w| (&w[0], &w[1])).collect() };
+    let pairs: Vec<(&Tuft, &Tuft)> = if tufts.len() == 1 {
+        vec![(&tufts[0], &tufts[0])]
+    } else {
+        tufts.windows(2).map(|w| (&w[0], &w[1])).collect()
+    };
     for (p, &(a, b)) in pairs.iter().enumerate() {
         let full = a.stroke == b.stroke;
         for w in maker.between(a, b, full, p)? {

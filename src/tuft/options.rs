@@ -76,18 +76,17 @@ impl TuftOptions {
             (Some(e), None) => {
                 Profile::Elliptic { horizontal: e.horizontal, vertical: e.vertical, alpha: e.alpha, beta: e.beta }
             }
-            (None, Some(points)) => Profile::Points(
-                points.iter().map(|p| ProfilePoint { t: p.x, width: p.y, thickness: p.z }).collect(),
-            ),
+            (None, Some(points)) => {
+                Profile::Points(points.iter().map(|p| ProfilePoint { t: p.x, width: p.y, thickness: p.z }).collect())
+            }
             // d of the paper, 1 to 100, counts millimetres; p is a percentage.
             (None, None) => {
                 TuftError::check("diameter", self.diameter, 1.0, 100.0)?;
                 TuftError::check("peak", self.peak, 1.0, 100.0)?;
-                Profile::Round { diameter: self.diameter * 0.1, peak: self.peak * 0.01 }
+                Profile::Round { diameter: self.diameter / 10.0, peak: self.peak / 100.0 }
             }
         };
-        let split =
-            (self.tips > 1).then_some(Split { tips: self.tips, from: 1.0 - self.split, spread: self.spread });
+        let split = (self.tips > 1).then_some(Split { tips: self.tips, from: 1.0 - self.split, spread: self.spread });
         let (twist, bend) = (self.twist.radians, self.bend.radians);
         let section = Section { profile, flatten: self.flatten, twist, bend, split };
         section.validate()?;

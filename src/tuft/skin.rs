@@ -50,7 +50,8 @@ impl<'a> Surface<'a> {
             frame.normal = normal;
         }
         let (w, h) = section.radii(t);
-        let split = section.split.filter(|s| t > s.from).map(|s| (section.radii(s.from).0, (t - s.from) / (1.0 - s.from)));
+        let split =
+            section.split.filter(|s| t > s.from).map(|s| (section.radii(s.from).0, (t - s.from) / (1.0 - s.from)));
         let widest = split.map_or(w, |(w, _)| w);
         let bend = if section.bend == 0.0 || widest == 0.0 {
             f32::INFINITY
@@ -206,15 +207,16 @@ pub(super) fn write(surface: &Surface, plan: &Plan, unit: &[Vec2], island: Islan
     for i in 0..last {
         for j in 0..n {
             let (a, b, c, d) = (vertex(i, j), vertex(i, j + 1), vertex(i + 1, j), vertex(i + 1, j + 1));
-            push([a, c, d]);
-            push([a, d, b]);
+            let corners = [a, b, c, d].map(|v| positions[(v - out.first) as usize]);
+            let pair = quad([a, b, c, d], corners, 2 * j < n);
+            push(pair[0]);
+            push(pair[1]);
         }
     }
     for j in 0..n {
         push([vertex(last, j), apex + (n + j) as u32, vertex(last, j + 1)]);
     }
 }
-
 
 /// Corners per arc of a middle prong for a wanted number of sides.
 pub(super) fn arc_steps(sides: usize, tips: usize) -> usize {
@@ -361,6 +363,14 @@ fn add_apex(mesh: &mut Mesh, at: Vec3, v: f32, n: usize, island: Island, span: (
     first
 }
 
+/// The triangles of a quad (a, b on one ring, c, d above them on the next): over the shorter diagonal, of two nearly
+/// equal ones over a-d when `first`, so that a mirrored tuft's mesh is the mirror image.
+fn quad([a, b, c, d]: [u32; 4], at: [Vec3; 4], first: bool) -> [[u32; 3]; 2] {
+    let (ad, bc) = (at[0].distance_squared(at[3]), at[1].distance_squared(at[2]));
+    let over_ad = if (ad - bc).abs() < 0.02 * ad { first } else { ad < bc };
+    if over_ad { [[a, c, d], [a, d, b]] } else { [[a, c, b], [b, c, d]] }
+}
+
 /// Joins two loops of `n` sides, given by their first vertex and whether they are an apex.
 fn join(mesh: &mut Mesh, (a, a_apex): (u32, bool), (b, b_apex): (u32, bool), n: usize) {
     for j in 0..n as u32 {
@@ -368,8 +378,9 @@ fn join(mesh: &mut Mesh, (a, a_apex): (u32, bool), (b, b_apex): (u32, bool), n: 
             (true, _) => mesh.triangles.push([a + j, b + j, b + j + 1]),
             (_, true) => mesh.triangles.push([a + j, b + j, a + j + 1]),
             _ => {
-                mesh.triangles.push([a + j, b + j, b + j + 1]);
-                mesh.triangles.push([a + j, b + j + 1, a + j + 1]);
+                let corners = [a + j, a + j + 1, b + j, b + j + 1];
+                let at = corners.map(|v| mesh.positions[v as usize]);
+                mesh.triangles.extend(quad(corners, at, 2 * j < n as u32));
             }
         }
     }

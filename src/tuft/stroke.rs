@@ -57,7 +57,10 @@ impl Stroke {
                 let side = if on.distance > 0.0 { "outside" } else { "inside" };
                 warnings.push(
                     Warning::new(format!("the stroke starts `{off:.2}` cm {side} the head; it was moved to the skin"))
-                        .hint(format!("start at {{ {:.2}, {:.2}, {:.2} }}", on.position.x, on.position.y, on.position.z)),
+                        .hint(format!(
+                            "start at {{ {:.2}, {:.2}, {:.2} }}",
+                            on.position.x, on.position.y, on.position.z
+                        )),
                 );
             }
             *start = on.position;
@@ -188,7 +191,9 @@ pub(super) fn beziers(p: &[Vec3]) -> Vec<[Vec3; 4]> {
             (h[i] * chord[i - 1] + h[i - 1] * chord[i]) / (h[i - 1] + h[i])
         }
     };
-    (0..last).map(|i| [p[i], p[i] + slope(i) * (h[i] / 3.0), p[i + 1] - slope(i + 1) * (h[i] / 3.0), p[i + 1]]).collect()
+    (0..last)
+        .map(|i| [p[i], p[i] + slope(i) * (h[i] / 3.0), p[i + 1] - slope(i + 1) * (h[i] / 3.0), p[i + 1]])
+        .collect()
 }
 
 /// The same through a closed loop of at least three points.

@@ -81,12 +81,8 @@ impl Sweep {
         // A spike that stands straight off the head has no side that faces away: take up, then the face's side.
         let length = self.length();
         let outward = move |n: &Node| (n.position - reference).normalize_or_zero();
-        let choices = [
-            up.map(|u| sums(&|_| u)),
-            Some(sums(&outward)),
-            Some(sums(&|_| Vec3::Y)),
-            Some(sums(&|_| Vec3::Z)),
-        ];
+        let choices =
+            [up.map(|u| sums(&|_| u)), Some(sums(&outward)), Some(sums(&|_| Vec3::Y)), Some(sums(&|_| Vec3::Z))];
         let Some((a, b)) = choices.into_iter().flatten().find(|&(a, b)| trig::hypot(a, b) > 0.02 * length) else {
             return;
         };
