@@ -1,6 +1,147 @@
-//! todo
+//! The `coif` command: arguments, exit codes, and the only code that prints.
+//!
+//! Everything for people goes to standard error; standard output carries only what another program may read.
 
-/// todo
-pub fn main() -> std::process::ExitCode {
-    std::process::ExitCode::SUCCESS
+mod args;
+mod barrier;
+mod text;
+
+use std::collections::BTreeMap;
+use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use clap::Parser;
+
+use crate::export::StrandForm;
+use crate::render::SheetOptions;
+use crate::script::{self, Disk, Ending, Outcome, show_all};
+use crate::workbench::{self, RunError, RunOptions};
+
+use args::{Arguments, Command, ParamsArguments, RunArguments, ScriptArguments};
+
+/// Done.
+const DONE: u8 = 0;
+/// The script, or a file that it asked for, is at fault.
+const SCRIPT: u8 = 1;
+/// The command line is at fault.
+const USAGE: u8 = 2;
+/// A file could not be written.
+const WRITE: u8 = 3;
+/// An error in Coif itself.
+const INTERNAL: u8 = 70;
+/// Cancelled.
+const CANCELLED: u8 = 130;
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(e) => {
+            // `--help` and `--version` arrive here too.
+            let code = if e.use_stderr() { USAGE } else { DONE };
+            let _ = e.print();
+            return ExitCode::from(code);
+        }
+    };
+    ExitCode::from(match arguments.command {
+        Command::Run(run) => command_run(&run),
+        Command::Params(params) => command_params(&params),
+    })
+}
+
+fn command_run(arguments: &RunArguments) -> u8 {
+    let options = RunOptions {
+        script: script_options(&arguments.script),
+        out: arguments.out.clone(),
+        debug: arguments.debug,
+        background: arguments.background,
+        views: arguments.views.clone(),
+        sheet: SheetOptions { width: arguments.size, height: arguments.size * 9 / 8, ..SheetOptions::default() },
+        strands: arguments.strands,
+        tolerance: arguments.tolerance,
+        guides: arguments.guides && arguments.strands != StrandForm::None,
+        count_inside: arguments.stats,
+    };
+    let report = match barrier::run(&arguments.script, move |task| workbench::run(&options, Arc::new(Disk), task)) {
+        Ok(report) => report,
+        Err(code) => return code,
+    };
+    tell(&report.outcome);
+    match &report.written {
+        Ok(written) => {
+            if !arguments.quiet {
+                say(&text::summary(&report, written, arguments.timings));
+            }
+            if arguments.stats {
+                print(&text::stats(&report, written));
+            }
+            DONE
+        }
+        Err(RunError::Script) => SCRIPT,
+        Err(RunError::Cancelled) => {
+            say("cancelled; nothing was written\n");
+            CANCELLED
+        }
+        Err(RunError::Write(error)) => {
+            say(&format!("error: {error}\n"));
+            WRITE
+        }
+        Err(error @ (RunError::Render(_) | RunError::Png(_) | RunError::Export(_))) => {
+            say(&format!("error: {error}; nothing was written\n"));
+            SCRIPT
+        }
+    }
+}
+
+fn command_params(arguments: &ParamsArguments) -> u8 {
+    let options = script_options(&arguments.script);
+    let outcome = match barrier::run(&arguments.script, move |task| script::run(&options, Arc::new(Disk), task)) {
+        Ok(outcome) => outcome,
+        Err(code) => return code,
+    };
+    tell(&outcome);
+    match outcome.ending {
+        Ending::Done => {
+            print(&if arguments.json { text::parameters_json(&outcome) } else { text::parameters(&outcome) });
+            DONE
+        }
+        Ending::Failed => SCRIPT,
+        Ending::Cancelled => CANCELLED,
+    }
+}
+
+fn script_options(arguments: &ScriptArguments) -> script::Options {
+    script::Options {
+        set: arguments.set.iter().cloned().collect::<BTreeMap<_, _>>(),
+        seed: arguments.seed,
+        head: arguments.head.clone(),
+        allow: arguments.allow.clone(),
+        time_limit: arguments.time_limit,
+        ..script::Options::new(&arguments.script)
+    }
+}
+
+/// What the script printed, and what was wrong with it.
+fn tell(outcome: &Outcome) {
+    for line in &outcome.log {
+        say(&format!("{line}\n"));
+    }
+    say(&show_all(&outcome.diagnostics, &outcome.sources, is_styled()));
+}
+
+/// True when standard error is a terminal whose owner wants colours.
+fn is_styled() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+}
+
+/// To standard error; a reader that went away is not our business.
+fn say(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// To standard output.
+fn print(text: &str) {
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }

@@ -1,1 +1,50 @@
-//! todo
+//! File formats: a [`Scene`](crate::scene::Scene) in, the bytes of a file out.
+//!
+//! One file or folder per format, all of one shape: `format(&Scene, &FormatOptions, &Task) -> Result<bytes>`. Nothing
+//! here opens a file; whoever calls writes the bytes. The same scene and options give the same bytes on any number of
+//! threads.
+//!
+//! * [`glb`](fn@glb): binary glTF 2.0, the head and the hair as ribbons or lines; [`guides_glb`]: the guides alone.
+
+mod error;
+pub mod glb;
+mod reduce;
+
+pub use error::ExportError;
+pub use glb::{GlbOptions, StrandForm, glb, guides_glb};
+
+use crate::geometry::Strands;
+use crate::geometry::strands::StrandsError;
+use crate::scene::{Hair, Part};
+
+/// Checks what every format relies on: finite nodes, and no strand that names a guide or source that is not there.
+fn check_hair(part: &Part, hair: &Hair) -> Result<(), ExportError> {
+    for strands in [&hair.strands, &hair.guides] {
+        match strands.validate() {
+            // Two parts of a style may grow from one root; no format minds.
+            Ok(()) | Err(StrandsError::RepeatedId { .. }) => {}
+            Err(error) => return Err(ExportError::Strands { part: part.name.clone(), error }),
+        }
+        check_sources(part, strands)?;
+    }
+    let count = hair.guides.count();
+    match hair.strands.guide.iter().position(|&g| g as usize >= count) {
+        Some(strand) => {
+            let index = hair.strands.guide[strand];
+            Err(ExportError::Dangling { part: part.name.clone(), strand, what: "guide", index, count })
+        }
+        None => Ok(()),
+    }
+}
+
+/// A set of strands without any list of sources is fine: then all indices are zero.
+fn check_sources(part: &Part, strands: &Strands) -> Result<(), ExportError> {
+    let count = strands.sources.len();
+    match strands.source.iter().position(|&s| usize::from(s) >= count.max(1)) {
+        Some(strand) => {
+            let index = u32::from(strands.source[strand]);
+            Err(ExportError::Dangling { part: part.name.clone(), strand, what: "source", index, count })
+        }
+        None => Ok(()),
+    }
+}

@@ -4,6 +4,7 @@
 
 pub mod bounds;
 pub mod bvh;
+pub mod curtain;
 pub mod curve;
 pub mod frames;
 pub mod mesh;
@@ -15,6 +16,7 @@ pub mod strands;
 
 pub use bounds::Bounds;
 pub use bvh::{Bvh, Closest, Hit};
+pub use curtain::Curtain;
 pub use mesh::{Group, Mesh, MeshError};
 pub use obox::OrientedBox;
 pub use solid::{Solid, SolidError, SurfacePoint};

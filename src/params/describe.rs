@@ -58,6 +58,8 @@ impl Field {
     /// A field of type `T`.
     pub fn new<T: FieldType>(name: &'static str, doc: &'static str) -> Self {
         let default = T::absent().map(|_| "nil".to_owned());
+        // A field that is a word of Rust (`box`, `where`) is written `r#box` there and `box` in a script.
+        let name = name.strip_prefix("r#").unwrap_or(name);
         Self { name, doc: doc.trim(), kind: T::kind(), unit: T::unit(), range: None, default, is_positional: false }
     }
 

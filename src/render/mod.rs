@@ -1,1 +1,24 @@
-//! todo
+//! Pictures of a scene: orthographic views on one sheet.
+//!
+//! [`sheet()`] does everything; it sees only a [`Scene`](crate::scene::Scene). The way of the data: [`camera`] frames the
+//! views; [`shadow`] finds how much light reaches each place; [`surface`] draws the head; [`strands`] projects and
+//! simplifies the hair, [`raster`] lays it down front to back, [`shade`] gives it colour; [`overlay`] makes the debug
+//! view; [`lettering`] writes; [`png`] codes.
+
+pub mod camera;
+pub mod fast;
+pub mod lettering;
+pub mod overlay;
+pub mod png;
+pub mod raster;
+pub mod shade;
+pub mod shadow;
+pub mod sheet;
+pub mod strands;
+pub mod surface;
+
+#[cfg(test)]
+mod tests;
+
+pub use png::{PngError, Speed};
+pub use sheet::{Picture, RenderError, SheetOptions, sheet};

@@ -1,0 +1,157 @@
+//! The command line, as `clap` reads it.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::export::StrandForm;
+use crate::scene::{Background, View};
+
+/// Hairstyles that are written: runs a Lua script, draws its picture, exports its hair.
+#[derive(Debug, Parser)]
+#[command(name = "coif", version, about, max_term_width = 100, after_help = EXIT_CODES)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit status:
+  0    done
+  1    the script, or a file that it asked for, is at fault
+  2    the command line is at fault
+  3    a file could not be written
+  70   an error in Coif itself
+  130  cancelled by Ctrl-C";
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a script; write its picture and its GLB
+    Run(Box<RunArguments>),
+    /// List the parameters of a script
+    Params(ParamsArguments),
+}
+
+/// What is common to every command that runs a script.
+#[derive(Args, Debug)]
+pub struct ScriptArguments {
+    /// The hairstyle, a Lua script
+    pub script: PathBuf,
+    /// Give a parameter of the script another value; may be repeated
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<(String, String)>,
+    /// Seed of all randomness
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Head to style instead of the one that the script's `coif.head()` gives: OBJ, glTF or GLB
+    #[arg(long, value_name = "FILE")]
+    pub head: Option<PathBuf>,
+    /// Let the script read below this folder too, besides its own; may be repeated
+    #[arg(long, value_name = "DIR")]
+    pub allow: Vec<PathBuf>,
+    /// Stop the script after this time
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
+    pub time_limit: Duration,
+    /// Threads to use; all of the machine's by default. The result does not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// `coif run`.
+#[derive(Args, Debug)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub script: ScriptArguments,
+    /// Folder for the outputs, NAME.png and NAME.glb
+    #[arg(short, long, value_name = "DIR", default_value = "out")]
+    pub out: PathBuf,
+    /// Write NAME.debug.png too: domains, guides by stage, partings, roots
+    #[arg(long)]
+    pub debug: bool,
+    /// Write NAME.guides.glb too: the guides as lines
+    #[arg(long)]
+    pub guides: bool,
+    /// Background of the picture, instead of the script's [white, dark]
+    #[arg(long, value_name = "COLOUR", value_parser = background)]
+    pub background: Option<Background>,
+    /// Views of the picture, instead of the script's [front, back, left, right, top, three-quarter, ...]
+    #[arg(long, value_name = "VIEW,...", value_delimiter = ',', value_parser = view)]
+    pub views: Option<Vec<View>>,
+    /// Width of one view in pixels
+    #[arg(long, value_name = "PX", default_value_t = 640, value_parser = clap::value_parser!(u32).range(16..=8192))]
+    pub size: u32,
+    /// What strands become in the GLB [ribbons, lines, none]
+    #[arg(long, value_name = "FORM", default_value = "ribbons", value_parser = form)]
+    pub strands: StrandForm,
+    /// Farthest that a strand in the GLB may lie from its true course
+    #[arg(long, value_name = "CM", default_value_t = 0.02, value_parser = tolerance)]
+    pub tolerance: f32,
+    /// Print one JSON object on standard output: counts per part, times per stage, files
+    #[arg(long)]
+    pub stats: bool,
+    /// Tell the time of every call of the script
+    #[arg(long)]
+    pub timings: bool,
+    /// Print errors and warnings only
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// `coif params`.
+#[derive(Args, Debug)]
+pub struct ParamsArguments {
+    #[command(flatten)]
+    pub script: ScriptArguments,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.to_owned())),
+        _ => Err("write NAME=VALUE, as in length=60".to_owned()),
+    }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if seconds > 0.0 && seconds <= 1e6 { Ok(Duration::from_secs_f64(seconds)) } else { Err("it takes more than 0 seconds".to_owned()) }
+}
+
+fn tolerance(text: &str) -> Result<f32, String> {
+    let value: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=10.0).contains(&value) { Ok(value) } else { Err("it takes 0 to 10 cm".to_owned()) }
+}
+
+fn choice<T>(text: &str, texts: &[&str], parse: fn(&str) -> Option<T>) -> Result<T, String> {
+    parse(text).ok_or_else(|| match crate::params::nearest(text, texts.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("it takes {}", texts.join(", ")),
+    })
+}
+
+fn background(text: &str) -> Result<Background, String> {
+    choice(text, Background::TEXTS, Background::parse)
+}
+
+fn view(text: &str) -> Result<View, String> {
+    choice(text, View::TEXTS, View::parse)
+}
+
+fn form(text: &str) -> Result<StrandForm, String> {
+    choice(text, StrandForm::TEXTS, StrandForm::parse)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_fit_together() {
+        super::Arguments::command().debug_assert();
+    }
+}

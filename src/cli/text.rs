@@ -1,0 +1,175 @@
+//! What a finished run says.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+use crate::script::Outcome;
+use crate::workbench::{Report, Written};
+
+/// For people: parts, times, files.
+pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
+    let mut out = String::new();
+    for part in &report.figures {
+        let name = &part.part;
+        let _ = match part.triangles {
+            0 => writeln!(
+                out,
+                "{name:>8}  {} strands, {} points, {} guides; {:.1} cm long on average, {:.1} cm at most",
+                thousands(part.strands),
+                thousands(part.points),
+                thousands(part.guides),
+                part.mean_length,
+                part.longest,
+            ),
+            triangles => writeln!(out, "{name:>8}  {} triangles", thousands(triangles)),
+        };
+    }
+    let stages: Vec<String> = report.stages.iter().map(|s| format!("{} {}", s.what, milliseconds(s.time))).collect();
+    let all: Duration = report.stages.iter().map(|s| s.time).sum();
+    let _ = writeln!(out, "{:>8}  {}: {}", "time", milliseconds(all), stages.join(", "));
+    if timings {
+        for timing in &report.outcome.timings {
+            let _ = writeln!(out, "{:>8}  {} {} at {}", "", milliseconds(timing.time), timing.what, timing.source);
+        }
+    }
+    for file in written {
+        let _ = writeln!(out, "{:>8}  {} ({})", "wrote", file.path.display(), size(file.bytes));
+    }
+    out
+}
+
+/// For programs: one JSON object.
+pub fn stats(report: &Report, written: &[Written]) -> String {
+    let ms = |time: Duration| (time.as_secs_f64() * 1e5).round() / 100.0;
+    let stages: serde_json::Map<String, Value> =
+        report.stages.iter().map(|s| (s.what.to_owned(), json!(ms(s.time)))).collect();
+    let calls: Vec<Value> = report
+        .outcome
+        .timings
+        .iter()
+        .map(|t| json!({ "call": t.what, "source": t.source, "ms": ms(t.time) }))
+        .collect();
+    let files: Vec<Value> =
+        written.iter().map(|f| json!({ "path": f.path.to_string_lossy(), "bytes": f.bytes })).collect();
+    let object = json!({
+        "parts": report.figures,
+        "ms": stages,
+        "calls": calls,
+        "files": files,
+        "warnings": report.outcome.diagnostics.len(),
+    });
+    format!("{object}\n")
+}
+
+/// The parameters of a script, one line each.
+pub fn parameters(outcome: &Outcome) -> String {
+    let mut out = String::new();
+    let width = outcome.parameters.iter().map(|p| p.name.chars().count()).max().unwrap_or(0);
+    for p in &outcome.parameters {
+        let mut takes = p.kind.text().to_owned();
+        match (p.min, p.max) {
+            (Some(min), Some(max)) => takes = format!("{takes} {min} to {max}"),
+            (Some(min), None) => takes = format!("{takes}, {min} or more"),
+            (None, Some(max)) => takes = format!("{takes}, {max} or less"),
+            (None, None) => {}
+        }
+        if !p.choices.is_empty() {
+            takes = p.choices.iter().map(|c| format!("\"{c}\"")).collect::<Vec<_>>().join(" or ");
+        }
+        if let Some(unit) = &p.unit {
+            takes = format!("{takes} {unit}");
+        }
+        let mut value = p.value.to_string();
+        let default = p.default.to_string();
+        if value != default {
+            value = format!("{value} (default {default})");
+        }
+        let doc = if p.doc.is_empty() { String::new() } else { format!(": {}", p.doc) };
+        let _ = writeln!(out, "{:width$} = {value}  [{takes}]{doc}", p.name);
+    }
+    out
+}
+
+/// The parameters of a script, as a JSON list.
+pub fn parameters_json(outcome: &Outcome) -> String {
+    let list: Vec<Value> = outcome
+        .parameters
+        .iter()
+        .map(|p| {
+            json!({
+                "name": p.name,
+                "kind": p.kind.text(),
+                "value": plain(&p.value),
+                "default": plain(&p.default),
+                "min": p.min,
+                "max": p.max,
+                "unit": p.unit,
+                "doc": p.doc,
+                "choices": p.choices,
+            })
+        })
+        .collect();
+    format!("{}\n", Value::Array(list))
+}
+
+fn plain(value: &crate::params::Value) -> Value {
+    use crate::params::Value as V;
+    match value {
+        V::Bool(b) => json!(b),
+        V::Number(n) => json!(n),
+        V::Text(t) => json!(t),
+        V::Vector(v) => json!([v.x, v.y, v.z]),
+        V::Nil | V::Table(_) | V::Handle(_) | V::Function(_) => Value::Null,
+    }
+}
+
+/// `40,000`.
+fn thousands(n: usize) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, c) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(c);
+    }
+    out
+}
+
+/// `412 ms`, `3.2 s`.
+fn milliseconds(time: Duration) -> String {
+    let seconds = time.as_secs_f64();
+    if seconds < 0.01 {
+        format!("{:.1} ms", seconds * 1e3)
+    } else if seconds < 10.0 {
+        format!("{:.0} ms", seconds * 1e3)
+    } else {
+        format!("{seconds:.1} s")
+    }
+}
+
+/// `812 kB`, `41.2 MB`.
+fn size(bytes: usize) -> String {
+    match bytes {
+        0..1_000 => format!("{bytes} B"),
+        1_000..1_000_000 => format!("{:.0} kB", bytes as f64 / 1e3),
+        _ => format!("{:.1} MB", bytes as f64 / 1e6),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_read_well() {
+        assert_eq!(thousands(0), "0");
+        assert_eq!(thousands(999), "999");
+        assert_eq!(thousands(2_560_000), "2,560,000");
+        assert_eq!(milliseconds(Duration::from_micros(2_340)), "2.3 ms");
+        assert_eq!(milliseconds(Duration::from_millis(1_234)), "1234 ms");
+        assert_eq!(size(41_234_567), "41.2 MB");
+    }
+}

@@ -1,0 +1,253 @@
+//! Finished strands kept out of the body: no node and no segment inside, beyond the root's own first segment.
+//!
+//! [`Clear::strand`] first looks whether a strand is clear, which is quick where the body is far. If it is not, nodes
+//! are pushed out along the surface's normal, and their neighbours with them, smoothly; a few rounds of this keep the
+//! strand's shape. What is still not clear then (folds, thin parts that a strand goes through) is laid again, node by
+//! node, sliding along the skin. What cannot be laid at all is cut.
+
+use glam::Vec3;
+
+use super::step::Body;
+use crate::geometry::{Solid, Strands};
+use rayon::prelude::*;
+
+/// Keeps strands out of a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Clear<'a> {
+    /// The body and the margin.
+    pub body: Body<'a>,
+}
+
+/// Memory that is used again from strand to strand.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    push: Vec<Vec3>,
+    sum: Vec<(Vec3, f32)>,
+    wanted: Vec<Vec3>,
+}
+
+/// What became of a strand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Nothing had to be done, or the whole strand could be kept.
+    Clear,
+    /// The strand ends where it could not go on; its last nodes lie on its last segment.
+    Cut,
+    /// There is no way out of the body from its root.
+    Stuck,
+}
+
+impl Clear<'_> {
+    /// Rounds of smooth pushing.
+    const ROUNDS: usize = 8;
+    /// Nodes on each side that follow a pushed one.
+    const FOLLOW: usize = 5;
+
+    /// Moves the nodes of a strand, root first, out of the body. The root stays where it is.
+    pub fn strand(&self, points: &mut [Vec3], scratch: &mut Scratch) -> Outcome {
+        if points.len() < 2 {
+            return Outcome::Stuck;
+        }
+        for _ in 0..Self::ROUNDS {
+            if !self.pushes(points, &mut scratch.push) {
+                return Outcome::Clear;
+            }
+            self.spread(points, scratch);
+        }
+        if self.is_clear(points) { Outcome::Clear } else { self.lay_again(points, &mut scratch.wanted) }
+    }
+
+    /// The margin at a node: it rises from the skin over the first of them.
+    fn margin_at(&self, points: &[Vec3], k: usize) -> f32 {
+        self.body.margin.min((0.45 * k as f32 * points[0].distance(points[1])).max(0.002))
+    }
+
+    /// Writes how far every node has to move; false when none has to.
+    fn pushes(&self, points: &[Vec3], push: &mut Vec<Vec3>) -> bool {
+        let solid = self.body.solid;
+        let mut any = false;
+        let mut at = |k: usize, by: Vec3| {
+            if !any {
+                any = true;
+                push.clear();
+                push.resize(points.len(), Vec3::ZERO);
+            }
+            if by.length_squared() > push[k].length_squared() {
+                push[k] = by;
+            }
+        };
+        let (mut clearance, mut was_inside) = (0.0_f32, false);
+        for k in 1..points.len() {
+            let (a, b) = (points[k - 1], points[k]);
+            let before = clearance;
+            clearance = solid.clearance(b).max(0.0);
+            let way = a.distance(b);
+            // Two balls free of the surface that together cover the segment.
+            if clearance >= self.body.margin && (k == 1 || before + clearance > way) {
+                was_inside = false;
+                continue;
+            }
+            let margin = self.margin_at(points, k);
+            let mut crosses = false;
+            let near = if k == 1 {
+                Some(solid.closest(b))
+            } else {
+                let middle = solid.closest_within((a + b) * 0.5, 0.5 * way + margin);
+                if middle.is_none() && !was_inside {
+                    // No surface near the segment, and it begins outside.
+                    continue;
+                }
+                crosses = middle.is_some_and(|m| m.distance <= 0.5 * way) && solid.segment_hit(a, b).is_some();
+                if crosses || was_inside { Some(solid.closest(b)) } else { solid.closest_within(b, margin) }
+            };
+            was_inside = near.is_some_and(|n| n.distance < 0.0);
+            if let Some(near) = near
+                && near.distance < 0.98 * margin
+            {
+                at(k, near.position + near.normal * margin - b);
+            }
+            if crosses {
+                // The deepest of a few places between the ends says how far both have to go.
+                let deepest = [0.2, 0.4, 0.6, 0.8]
+                    .map(|u| solid.closest(a.lerp(b, u)))
+                    .into_iter()
+                    .reduce(|x, y| if y.distance < x.distance { y } else { x });
+                if let Some(deepest) = deepest {
+                    let by = deepest.normal * (margin - deepest.distance.min(0.0));
+                    at(k, by);
+                    at(k - 1, by);
+                }
+            }
+        }
+        any
+    }
+
+    /// Moves the nodes by the pushes and their neighbours with them.
+    fn spread(&self, points: &mut [Vec3], scratch: &mut Scratch) {
+        let n = points.len();
+        scratch.sum.clear();
+        scratch.sum.resize(n, (Vec3::ZERO, 0.0));
+        for k in 1..n {
+            let by = scratch.push[k];
+            if by == Vec3::ZERO {
+                continue;
+            }
+            let (lo, hi) = (k.saturating_sub(Self::FOLLOW).max(1), (k + Self::FOLLOW).min(n - 1));
+            for j in lo..=hi {
+                let u = k.abs_diff(j) as f32 / (Self::FOLLOW + 1) as f32;
+                let weight = (1.0 - u * u) * (1.0 - u * u);
+                let sum = &mut scratch.sum[j];
+                sum.0 += by * weight;
+                sum.1 += weight;
+            }
+        }
+        for k in 1..n {
+            let (sum, weight) = scratch.sum[k];
+            let smooth = sum / weight.max(1.0);
+            let own = scratch.push[k];
+            // A node that must move moves far enough along its own push, whatever its neighbours want.
+            let short = if own == Vec3::ZERO { Vec3::ZERO } else { own * (1.0 - smooth.dot(own) / own.length_squared()).max(0.0) };
+            points[k] += smooth + short;
+        }
+    }
+
+    /// True when no node and no segment beyond the first is inside.
+    pub fn is_clear(&self, points: &[Vec3]) -> bool {
+        !is_inside(self.body.solid, points)
+    }
+
+    /// Lays the strand again: every node where it was wanted if the way there is free, otherwise a step that slides.
+    fn lay_again(&self, points: &mut [Vec3], wanted: &mut Vec<Vec3>) -> Outcome {
+        wanted.clear();
+        wanted.extend_from_slice(points);
+        let solid = self.body.solid;
+        let step = wanted[0].distance(wanted[1]);
+        let Some(first) = self.way_out(wanted[0], wanted[1], step) else { return Outcome::Stuck };
+        points[1] = first;
+        // What sliding adds is given back slowly, so that the strand finds its way to where it was.
+        let mut behind = first - wanted[1];
+        for k in 2..points.len() {
+            let (v, h) = (points[k - 1], wanted[k].distance(wanted[k - 1]));
+            let goal = wanted[k] + behind * 0.8;
+            let margin = self.margin_at(points, k);
+            let is_free = |q: Vec3| {
+                let clearance = solid.clearance(q);
+                clearance > v.distance(q) || (!solid.contains(q) && solid.segment_hit(v, q).is_none())
+            };
+            let direct = solid.clearance(goal) >= margin || solid.signed_distance(goal) >= 0.98 * margin;
+            let end = if direct && is_free(goal) {
+                goal
+            } else {
+                let t = (goal - v).try_normalize().unwrap_or(Vec3::NEG_Y);
+                self.body.step(v, v, t, h, margin).0
+            };
+            if !end.is_finite() || !is_free(end) {
+                return Self::cut(points, k);
+            }
+            behind = end - wanted[k];
+            points[k] = end;
+        }
+        if self.is_clear(points) {
+            return Outcome::Clear;
+        }
+        // Not reached but by rounding: keep the part that is clear.
+        let clear = (2..points.len()).take_while(|&k| self.is_clear(&points[..=k])).count() + 2;
+        if clear > 2 || self.is_clear(&points[..2]) { Self::cut(points, clear) } else { Outcome::Stuck }
+    }
+
+    /// A first node outside, near `wanted`.
+    fn way_out(&self, root: Vec3, wanted: Vec3, step: f32) -> Option<Vec3> {
+        let solid = self.body.solid;
+        let margin = self.body.margin.min(0.45 * step);
+        let near = solid.closest(wanted);
+        if near.distance >= margin {
+            return Some(wanted);
+        }
+        let at_root = solid.closest(root).normal;
+        let places = [
+            near.position + near.normal * margin,
+            root + at_root * margin.max(0.1 * step),
+            root + at_root * margin.max(step),
+        ];
+        places.into_iter().find(|&p| p.is_finite() && solid.signed_distance(p) > 0.0)
+    }
+
+    /// Ends the strand before node `k`: what is left of it goes onto its last segment.
+    fn cut(points: &mut [Vec3], k: usize) -> Outcome {
+        let n = points.len();
+        let (a, b) = (points[k - 2], points[k - 1]);
+        let pieces = (n - k + 1) as f32;
+        for j in k - 1..n {
+            points[j] = a.lerp(b, (j - (k - 2)) as f32 / pieces);
+        }
+        // With k = 2 the last segment is the root's own, whose inner part may touch the skin.
+        if k == 2 {
+            points[1..].fill(b);
+        }
+        Outcome::Cut
+    }
+}
+
+/// True when a node of the strand beyond its root, or a segment beyond its first, is inside the body or crosses its
+/// surface.
+pub fn is_inside(solid: &Solid, points: &[Vec3]) -> bool {
+    let mut before = 0.0;
+    points.iter().enumerate().skip(1).any(|(k, &b)| {
+        let clearance = solid.clearance(b);
+        let covered = before + clearance.max(0.0);
+        before = clearance.max(0.0);
+        if clearance > 0.0 && k == 1 {
+            return false;
+        }
+        let a = points[k - 1];
+        if clearance > 0.0 && covered > a.distance(b) {
+            return false;
+        }
+        (clearance <= 0.0 && solid.contains(b)) || (k > 1 && solid.segment_hit(a, b).is_some())
+    })
+}
+
+/// How many strands have a node or a segment (the root's own first apart) inside the body, by the exact test.
+pub fn count_inside(strands: &Strands, solid: &Solid) -> usize {
+    (0..strands.count()).into_par_iter().filter(|&i| is_inside(solid, strands.strand(i))).count()
+}

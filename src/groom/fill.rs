@@ -1,0 +1,353 @@
+//! Members: the strands between the guides.
+//!
+//! A member mixes the tangents of the guides around its root and grows along the mixture from its own root. It listens
+//! only to guides on its side of every parting, and the more they agree with the nearest of them, the more.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::clear::{Clear, Outcome, Scratch};
+use super::error::{GroomError, check_size, check_value};
+use super::grow::stuck_warning;
+use super::layout;
+use super::natural::first_normal;
+use super::neighbours::{Nearest, agreement};
+use super::noise::gaussian3;
+use super::step::Body;
+use crate::geometry::{Root, Solid, Strands, curve, curve::Resampler, frames};
+use crate::math::{rng::Key, trig};
+use crate::task::{Task, Warned, Warning};
+
+crate::params! {
+    /// Fills the scalp with strands between guides.
+    pub struct FillOptions("Strands:fill") {
+        /// How many strands.
+        strands: usize = 40_000, range(1.0, 5_000_000.0);
+        /// Nodes per strand; as many as the guides have, at most 128, when left out.
+        nodes: Option<usize>, range(2.0, 4096.0);
+        /// How many guides a strand follows at most.
+        neighbours: usize = 4, range(1.0, 8.0);
+        /// How much shorter strands may be than their guides, as a part of the length.
+        length_variation: f32 = 0.05, range(0.0, 1.0);
+        /// Standard deviation of the gaussian noise on the tangents, smooth along the strand.
+        noise: f32 = 0.02, range(0.0, 10.0);
+        /// Part of the strands that stray, with six times the noise.
+        flyaway: f32 = 0.0, range(0.0, 1.0);
+        /// How far strands gather round their guide: 0 leaves them evenly spread, 1 brings all tips to the guide's tip.
+        clump: f32 = 0.0, range(0.0, 1.0);
+        /// Where along the strand gathering begins, as a part of the length.
+        clump_start: f32 = 0.0, range(0.0, 0.95);
+        /// Depth of the layer of hair over the guides.
+        thickness: f32 = 0.4, unit("cm"), range(0.0, 20.0);
+        /// Least distance of hair from the skin.
+        margin: f32 = 0.03, unit("cm"), range(0.005, 10.0);
+        /// Another seed gives other random numbers.
+        seed: u64 = 0;
+    }
+}
+
+/// True when a parting lies between two places on the scalp.
+pub type Separated<'a> = dyn Fn(Vec3, Vec3) -> bool + Sync + 'a;
+
+/// What [`fill`] fills.
+#[derive(Clone, Copy)]
+pub struct Fill<'a> {
+    /// The guides, finished.
+    pub guides: &'a Strands,
+    /// The members' roots.
+    pub roots: &'a [Root],
+    /// How.
+    pub options: &'a FillOptions,
+    /// Partings.
+    pub separated: Option<&'a Separated<'a>>,
+    /// The body to keep out of, if there is one.
+    pub solid: Option<&'a Solid>,
+    /// The place in the script that asked for it.
+    pub source: &'a Arc<str>,
+}
+
+/// Most guides that one member can follow.
+const MOST: usize = 8;
+/// Guides that are looked at before all of them are.
+const NEAR: usize = 16;
+/// Pieces of the noise along a strand.
+const KNOTS: usize = 8;
+
+/// Grows one member from every root. A root without a guide on its side of the partings, or without a way out of the
+/// head, grows none; a warning tells how many.
+///
+/// # Errors
+/// No guides or roots, numbers out of range, too many strands or nodes, or the task was cancelled.
+pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
+    let options = input.options;
+    input.guides.validate()?;
+    for (what, count) in [("guides", input.guides.count()), ("roots", input.roots.len())] {
+        if count == 0 {
+            return Err(GroomError::Nothing { what });
+        }
+    }
+    check_value("the margin", options.margin, 0.005, f32::MAX)?;
+    for (what, value) in [
+        ("the length variation", options.length_variation),
+        ("the part of strands that stray", options.flyaway),
+        ("the clump", options.clump),
+        ("the clump's start", options.clump_start),
+    ] {
+        check_value(what, value, 0.0, 1.0)?;
+    }
+    check_value("the noise", options.noise, 0.0, f32::MAX)?;
+    check_value("the thickness", options.thickness, 0.0, f32::MAX)?;
+    let most = (0..input.guides.count()).map(|g| input.guides.range(g).len()).max().unwrap_or(2);
+    let nodes = options.nodes.unwrap_or(most.min(128)).max(2);
+    let n = input.roots.len();
+    check_size(n as u64, n as u64 * nodes as u64)?;
+
+    let guides = Prepared::new(input.guides, nodes);
+    task.check()?;
+    let mut strands = Strands {
+        points: vec![Vec3::ZERO; n * nodes],
+        stage: vec![0; n * nodes],
+        offsets: (0..=n).map(|i| (i * nodes) as u32).collect(),
+        roots: input.roots.to_vec(),
+        guide: vec![0; n],
+        source: vec![0; n],
+        sources: vec![Arc::clone(input.source)],
+    };
+    // Guide of each member, or why it has none.
+    const ALONE: u32 = u32::MAX;
+    const STUCK: u32 = u32::MAX - 1;
+    let followed: Vec<AtomicU32> = (0..n).map(|_| AtomicU32::new(ALONE)).collect();
+    layout::write_all(&mut strands, task, "filling", Worker::default, |worker, i, points, stages| {
+        let Some(guide) = worker.choose(input, &guides, &input.roots[i]) else { return };
+        worker.grow(input, &guides, guide, &input.roots[i], points);
+        let mut answer = guide as u32;
+        if let Some(solid) = input.solid {
+            let clear = Clear { body: Body { solid, margin: options.margin } };
+            if clear.strand(points, &mut worker.scratch) == Outcome::Stuck {
+                answer = STUCK;
+            }
+        }
+        stages.copy_from_slice(&guides.stages[guide * nodes..(guide + 1) * nodes]);
+        followed[i].store(answer, Ordering::Relaxed);
+    })?;
+    task.progress("filling", 1.0);
+
+    strands.guide = followed.iter().map(|g| g.load(Ordering::Relaxed)).collect();
+    let count = |what: u32| strands.guide.iter().filter(|&&g| g == what).count();
+    let (alone, stuck) = (count(ALONE), count(STUCK));
+    let mut warnings = Vec::new();
+    if alone > 0 {
+        warnings.push(
+            Warning::new(format!("`{alone}` of {n} strands were left out: no guide grows on their side of the parting"))
+                .hint("ask for more guides, or move the parting"),
+        );
+    }
+    if stuck > 0 {
+        warnings.push(stuck_warning(stuck, n, "strands"));
+    }
+    if alone + stuck > 0 {
+        let counts: Vec<usize> = strands.guide.iter().map(|&g| if g >= STUCK { 0 } else { nodes }).collect();
+        layout::compact(&mut strands, &counts);
+    }
+    Ok(Warned { value: strands, warnings })
+}
+
+/// Guides with equally many nodes each, and what members ask of them.
+struct Prepared {
+    nodes: usize,
+    /// Per guide and node.
+    points: Vec<Vec3>,
+    /// Per guide and segment: unit directions.
+    tangents: Vec<Vec3>,
+    /// Per guide and node: normals of the rotation-minimising frame, away from the head.
+    normals: Vec<Vec3>,
+    /// Per guide and node.
+    stages: Vec<u8>,
+    lengths: Vec<f32>,
+    nearest: Nearest,
+    /// Per guide: how far the guides near it agree with it.
+    agreements: Vec<Vec<(u32, f32)>>,
+}
+
+impl Prepared {
+    fn new(guides: &Strands, nodes: usize) -> Self {
+        let n = guides.count();
+        let mut points = vec![Vec3::ZERO; n * nodes];
+        let mut tangents = vec![Vec3::ZERO; n * (nodes - 1)];
+        let mut normals = vec![Vec3::ZERO; n * nodes];
+        let mut stages = vec![0; n * nodes];
+        let lengths = points
+            .par_chunks_mut(nodes)
+            .zip(tangents.par_chunks_mut(nodes - 1))
+            .zip(normals.par_chunks_mut(nodes).zip(stages.par_chunks_mut(nodes)))
+            .enumerate()
+            .map_init(
+                || (Resampler::default(), vec![Vec3::ZERO; nodes]),
+                |(resampler, smooth), (g, ((points, tangents), (normals, stages)))| {
+                    let old = if guides.stage.is_empty() { &[][..] } else { &guides.stage[guides.range(g)] };
+                    resampler.uniform(guides.strand(g), points, |j, at| {
+                        stages[j] = old.get(at.ceil() as usize).copied().unwrap_or(0);
+                    });
+                    let mut last = guides.roots[g].normal;
+                    for (t, w) in tangents.iter_mut().zip(points.windows(2)) {
+                        last = (w[1] - w[0]).try_normalize().unwrap_or(last);
+                        *t = last;
+                    }
+                    frames::tangents(points, smooth);
+                    let first = first_normal(points, smooth[0], &guides.roots[g]);
+                    frames::normals(points, smooth, first, normals);
+                    curve::length(points)
+                },
+            )
+            .collect();
+        let nearest = Nearest::new(guides.roots.iter().map(|r| r.position).collect());
+        let mut prepared =
+            Self { nodes, points, tangents, normals, stages, lengths, nearest, agreements: Vec::new() };
+        prepared.agreements = (0..n)
+            .into_par_iter()
+            .map_init(Vec::new, |found, g| {
+                prepared.nearest.find(guides.roots[g].position, NEAR, found);
+                found.iter().map(|&(_, other)| (other, prepared.agree(g, other as usize))).collect()
+            })
+            .collect();
+        prepared
+    }
+
+    fn agree(&self, a: usize, b: usize) -> f32 {
+        let tangents = |g: usize| &self.tangents[g * (self.nodes - 1)..(g + 1) * (self.nodes - 1)];
+        agreement(tangents(a), tangents(b))
+    }
+
+    fn agreement(&self, a: usize, b: u32) -> f32 {
+        let known = self.agreements[a].iter().find(|e| e.0 == b);
+        known.map_or_else(|| self.agree(a, b as usize), |e| e.1)
+    }
+}
+
+/// One thread's memory.
+#[derive(Default)]
+struct Worker {
+    found: Vec<(f32, u32)>,
+    /// Guides on this side, nearest first: distance and index.
+    near: Vec<(f32, u32)>,
+    /// Guides that the member follows, and their weights, which sum to 1.
+    weights: Vec<(usize, f32)>,
+    scratch: Scratch,
+}
+
+impl Worker {
+    /// Chooses the guides of a member and their weights; the one it follows most, if there is any.
+    fn choose(&mut self, input: &Fill, guides: &Prepared, root: &Root) -> Option<usize> {
+        let wanted = input.options.neighbours.clamp(1, MOST);
+        let count = guides.lengths.len();
+        // First a few near ones; where a parting takes them all, every guide.
+        for k in [NEAR.min(count), count] {
+            guides.nearest.find(root.position, k, &mut self.found);
+            self.near.clear();
+            for &(d, g) in &self.found {
+                let there = input.guides.roots[g as usize].position;
+                if input.separated.is_none_or(|separated| !separated(root.position, there)) {
+                    self.near.push((d.sqrt(), g));
+                    if self.near.len() > wanted {
+                        break;
+                    }
+                }
+            }
+            if !self.near.is_empty() {
+                break;
+            }
+        }
+        let &(_, first) = self.near.first()?;
+        let first = first as usize;
+        // Weights that fall to zero at the first guide that no longer counts (Franke and Little 1980), so that members
+        // do not jump where that guide changes.
+        let reach = match self.near.get(wanted) {
+            Some(&(d, _)) => d,
+            None => self.near.last().map_or(1.0, |l| l.0 * 1.5),
+        }
+        .max(1e-4);
+        self.weights.clear();
+        let mut sum = 0.0;
+        for &(d, g) in self.near.iter().take(wanted) {
+            let d = d.max(1e-3 * reach);
+            let w = ((reach - d).max(0.0) / (reach * d)) * ((reach - d).max(0.0) / (reach * d));
+            let w = w * if g as usize == first { 1.0 } else { guides.agreement(first, g) };
+            if w > 0.0 {
+                self.weights.push((g as usize, w));
+                sum += w;
+            }
+        }
+        if sum > 0.0 {
+            self.weights.iter_mut().for_each(|w| w.1 /= sum);
+        } else {
+            self.weights.push((first, 1.0));
+        }
+        Some(first)
+    }
+
+    /// Integrates the mixed tangents from the member's own root.
+    fn grow(&self, input: &Fill, guides: &Prepared, guide: usize, root: &Root, out: &mut [Vec3]) {
+        let options = input.options;
+        let nodes = guides.nodes;
+        let segments = nodes - 1;
+        let key = Key::new(options.seed, "member").with(root.id);
+        let mixed: f32 = self.weights.iter().map(|&(g, w)| guides.lengths[g] * w).sum();
+        let length = mixed * (1.0 - options.length_variation * key.with(1).unit());
+        let h = length / segments as f32;
+        let strays = key.with(2).unit() < options.flyaway;
+        let noise = options.noise * if strays { 6.0 } else { 1.0 };
+
+        // The mixture.
+        let tangents = &mut out[1..];
+        let mut used = self.weights.iter();
+        if let Some(&(g, w)) = used.next() {
+            let from = &guides.tangents[g * segments..(g + 1) * segments];
+            tangents.iter_mut().zip(from).for_each(|(t, &f)| *t = f * w);
+        }
+        for &(g, w) in used {
+            let from = &guides.tangents[g * segments..(g + 1) * segments];
+            tangents.iter_mut().zip(from).for_each(|(t, &f)| *t += f * w);
+        }
+        // Integration, with noise that runs straight from knot to knot.
+        let own = &guides.tangents[guide * segments..(guide + 1) * segments];
+        let knot = |k: usize| if noise > 0.0 { gaussian3(key.with(16 + k as u64)) * noise } else { Vec3::ZERO };
+        let pieces = KNOTS.min(segments);
+        let (mut p, mut at, mut a, mut b) = (root.position, 0, knot(0), knot(1));
+        for j in 0..segments {
+            let mut t = out[j + 1];
+            if noise > 0.0 {
+                let x = (j * pieces) as f32 / segments as f32;
+                if x as usize > at {
+                    at = x as usize;
+                    (a, b) = (b, knot(at + 1));
+                }
+                t += a.lerp(b, x - at as f32);
+            }
+            let squared = t.length_squared();
+            t = if squared > 1e-8 { t * (1.0 / squared.sqrt()) } else { own[j] };
+            p += t * h;
+            out[j + 1] = p;
+        }
+        out[0] = root.position;
+
+        // The layer of hair: each member lies at its own height over the guides.
+        let height = options.thickness * key.with(3).unit();
+        if height > 0.0 {
+            let rise = 4.0 * options.thickness;
+            let normals = &guides.normals[guide * nodes..(guide + 1) * nodes];
+            for (j, (p, n)) in out.iter_mut().zip(normals).enumerate() {
+                *p += *n * (height * trig::smoothstep(0.0, rise, h * j as f32));
+            }
+        }
+        if options.clump > 0.0 {
+            let points = &guides.points[guide * nodes..(guide + 1) * nodes];
+            for (j, (p, &q)) in out.iter_mut().zip(points).enumerate().skip(1) {
+                let u = j as f32 / segments as f32;
+                *p = p.lerp(q, options.clump * trig::smoothstep(options.clump_start, 1.0, u));
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Pictures as PNG files.
+
+use super::sheet::Picture;
+
+/// What matters more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Speed {
+    /// Time: a few milliseconds, for a picture that is looked at once.
+    Fast,
+    /// Size: a tenth of a second, for a file that is kept.
+    Balanced,
+}
+
+/// A picture that cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum PngError {
+    /// From the `png` crate.
+    #[error("the picture of {width} x {height} cannot be coded: {source}")]
+    Coding {
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+        /// What the coder says.
+        source: ::png::EncodingError,
+    },
+}
+
+/// The bytes of a PNG file.
+///
+/// # Errors
+/// [`PngError::Coding`] for a picture without pixels or whose pixels do not fit its size.
+pub fn encode(picture: &Picture, speed: Speed) -> Result<Vec<u8>, PngError> {
+    let mut bytes = Vec::new();
+    let (width, height) = (picture.width, picture.height);
+    let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_depth(::png::BitDepth::Eight);
+    encoder.set_source_srgb(::png::SrgbRenderingIntent::Perceptual);
+    encoder.set_compression(match speed {
+        Speed::Fast => ::png::Compression::Fast,
+        Speed::Balanced => ::png::Compression::Balanced,
+    });
+    let written = (|| {
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&picture.pixels)?;
+        writer.finish()
+    })();
+    written.map_err(|source| PngError::Coding { width, height, source })?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let pixels: Vec<u8> = (0..37 * 11 * 3).map(|i| (i * i % 251) as u8).collect();
+        let picture = Picture { width: 37, height: 11, pixels };
+        for speed in [Speed::Fast, Speed::Balanced] {
+            let bytes = encode(&picture, speed).unwrap();
+            let mut reader = ::png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+            let mut back = vec![0; reader.output_buffer_size().unwrap()];
+            let info = reader.next_frame(&mut back).unwrap();
+            assert_eq!((info.width, info.height, info.color_type), (37, 11, ::png::ColorType::Rgb));
+            assert_eq!(back, picture.pixels);
+        }
+    }
+
+    #[test]
+    fn a_picture_that_is_none_is_refused() {
+        assert!(encode(&Picture { width: 0, height: 3, pixels: Vec::new() }, Speed::Fast).is_err());
+        assert!(encode(&Picture { width: 2, height: 2, pixels: vec![0; 5] }, Speed::Fast).is_err());
+    }
+}

@@ -1,0 +1,355 @@
+//! Light inside hair: a grid of how much stands in the way, and how much light from one side reaches each cell.
+//!
+//! Transmittance is carried from layer to layer of the grid, away from the light; each cell takes the bilinear mean of
+//! what the layer before it lets through (the slicing of Kniss et al. 2003, "A model for volume lighting"). One sweep
+//! costs one pass over the grid whatever the number of strands, and its shadows are soft as those of a wide lamp.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::geometry::{Bounds, Mesh, Strands};
+use crate::task::{Cancelled, Task};
+
+use super::fast;
+
+/// Cells along the longest side of the grid.
+const CELLS: f32 = 112.0;
+/// Smallest cell in cm: finer ones would show single strands of the preview as blotches.
+const FINEST: f32 = 0.16;
+/// Optical depth of one cell that holds a piece of skin.
+const SKIN: f32 = 5.0;
+/// Groups of strands that are summed apart and then in order, so that the sum does not depend on the threads.
+const GROUPS: usize = 4;
+
+/// Numbers on a regular grid over space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    /// Middle of the first cell.
+    origin: Vec3,
+    /// Edge of a cell, cm.
+    cell: f32,
+    /// Cells along x, y, z.
+    size: [usize; 3],
+    /// z fastest, then y, then x.
+    values: Vec<f32>,
+}
+
+impl Grid {
+    /// A grid over `bounds` with one free cell on every side and at most `CELLS` along its longest side.
+    fn over(bounds: Bounds) -> Self {
+        let bounds = if bounds.is_empty() { Bounds::of([Vec3::splat(-1.0), Vec3::ONE]) } else { bounds };
+        let cell = (bounds.size().max_element() / CELLS).max(FINEST);
+        let bounds = bounds.grown(1.5 * cell);
+        let size = (bounds.size() / cell).to_array().map(|n| (n.ceil() as usize).clamp(2, CELLS as usize + 8));
+        Self { origin: bounds.min + Vec3::splat(0.5 * cell), cell, size, values: vec![0.0; size.iter().product()] }
+    }
+
+    /// Edge of a cell in cm.
+    pub fn cell(&self) -> f32 {
+        self.cell
+    }
+
+    fn index(&self, p: Vec3) -> Option<usize> {
+        let q = (p - self.origin) / self.cell + Vec3::splat(0.5);
+        let n = self.size;
+        let inside = q.min_element() >= 0.0 && q.x < n[0] as f32 && q.y < n[1] as f32 && q.z < n[2] as f32;
+        inside.then(|| (q.x as usize * n[1] + q.y as usize) * n[2] + q.z as usize)
+    }
+
+    /// The value at `p` between the cells around it; outside the grid that of its border.
+    pub fn sample(&self, p: Vec3) -> f32 {
+        let n = self.size;
+        let top = Vec3::new(n[0] as f32 - 1.001, n[1] as f32 - 1.001, n[2] as f32 - 1.001);
+        let q = ((p - self.origin) / self.cell).max(Vec3::ZERO).min(top);
+        let (x, y, z) = (q.x as usize, q.y as usize, q.z as usize);
+        let f = q - Vec3::new(x as f32, y as f32, z as f32);
+        let (sx, sy) = (n[1] * n[2], n[2]);
+        let i = x * sx + y * sy + z;
+        let v = &self.values;
+        let row = |i: usize| v[i] + (v[i + 1] - v[i]) * f.z;
+        let plane = |i: usize| {
+            let (a, b) = (row(i), row(i + sy));
+            a + (b - a) * f.y
+        };
+        let (a, b) = (plane(i), plane(i + sx));
+        a + (b - a) * f.x
+    }
+
+    /// The direction in which the values fall fastest, as long as they fall per cell.
+    pub fn descent(&self, p: Vec3) -> Vec3 {
+        let d = self.cell;
+        let slope = |axis: Vec3| self.sample(p - axis * d) - self.sample(p + axis * d);
+        Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)) * 0.5
+    }
+
+    /// A grid of half as many cells along each side, each the mean of eight.
+    fn halved(&self) -> Self {
+        let size = self.size.map(|n| n.div_ceil(2).max(2));
+        let mut values = Vec::with_capacity(size.iter().product());
+        let n = self.size;
+        for x in 0..size[0] {
+            for y in 0..size[1] {
+                for z in 0..size[2] {
+                    let mut sum = 0.0;
+                    for k in 0..8 {
+                        let (a, b, c) = (2 * x + (k >> 2), 2 * y + (k >> 1 & 1), 2 * z + (k & 1));
+                        if a < n[0] && b < n[1] && c < n[2] {
+                            sum += self.values[(a * n[1] + b) * n[2] + c];
+                        }
+                    }
+                    values.push(sum / 8.0);
+                }
+            }
+        }
+        Self { origin: self.origin + Vec3::splat(0.5 * self.cell), cell: 2.0 * self.cell, size, values }
+    }
+
+    /// Mean over neighbours along one axis with the weights 1 2 1.
+    fn blur(&mut self, axis: usize) {
+        let stride = [self.size[1] * self.size[2], self.size[2], 1][axis];
+        let n = self.size[axis];
+        for start in 0..self.values.len() {
+            if (start / stride) % n != 0 {
+                continue;
+            }
+            let mut before = 0.0;
+            for k in 0..n {
+                let i = start + k * stride;
+                let here = self.values[i];
+                let after = if k + 1 < n { self.values[i + stride] } else { 0.0 };
+                self.values[i] = 0.25 * before + 0.5 * here + 0.25 * after;
+                before = here;
+            }
+        }
+    }
+}
+
+/// What stands in the way of light: optical depth per cm of path, from strands (their cross-section) and skin.
+///
+/// `hair` is strands with their width at root and tip in cm.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn density(hair: &[(&Strands, f32, f32)], meshes: &[&Mesh], task: &Task) -> Result<Grid, Cancelled> {
+    let finite = |p: &&Vec3| p.is_finite();
+    let mut bounds = Bounds::EMPTY;
+    for (strands, ..) in hair {
+        bounds = bounds.union(Bounds::of(strands.points.iter().filter(finite).copied()));
+    }
+    if bounds.is_empty() {
+        for mesh in meshes {
+            bounds = bounds.union(Bounds::of(mesh.positions.iter().filter(finite).copied()));
+        }
+    } else {
+        // The head stands in the hair's light only where it is near the hair.
+        bounds = bounds.grown(2.0);
+    }
+    let empty = Grid::over(bounds);
+    let parts: Result<Vec<Vec<f32>>, Cancelled> = (0..GROUPS)
+        .into_par_iter()
+        .map(|group| {
+            let mut values = vec![0.0_f32; empty.values.len()];
+            for &(strands, root, tip) in hair {
+                splat(strands, root, tip, group, &empty, &mut values, task)?;
+            }
+            Ok(values)
+        })
+        .collect();
+    let mut grid = empty;
+    for part in parts? {
+        for (sum, v) in grid.values.iter_mut().zip(part) {
+            *sum += v;
+        }
+    }
+    (0..3).for_each(|axis| grid.blur(axis));
+    let skin = SKIN / grid.cell;
+    for mesh in meshes {
+        task.check()?;
+        for t in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.corners(t);
+            let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+            if !longest.is_finite() || longest > 200.0 {
+                continue;
+            }
+            let steps = (longest / (0.6 * grid.cell)).ceil().max(1.0) as usize;
+            for i in 0..=steps {
+                for j in 0..=steps - i {
+                    let (u, v) = (i as f32 / steps as f32, j as f32 / steps as f32);
+                    if let Some(k) = grid.index(a + (b - a) * u + (c - a) * v) {
+                        grid.values[k] = skin;
+                    }
+                }
+            }
+        }
+    }
+    Ok(grid)
+}
+
+/// Adds one group's strands: per segment width x length over the cell's volume, times pi/4 for the mean shadow of a
+/// cylinder over all directions.
+fn splat(
+    strands: &Strands,
+    root: f32,
+    tip: f32,
+    group: usize,
+    grid: &Grid,
+    values: &mut [f32],
+    task: &Task,
+) -> Result<(), Cancelled> {
+    let per_volume = std::f32::consts::FRAC_PI_4 / (grid.cell * grid.cell * grid.cell);
+    let count = strands.count();
+    for (done, i) in (group * count / GROUPS..(group + 1) * count / GROUPS).enumerate() {
+        if done % 256 == 0 {
+            task.check()?;
+        }
+        let nodes = strands.strand(i);
+        let last = (nodes.len() as f32 - 1.0).max(1.0);
+        for (k, w) in nodes.windows(2).enumerate() {
+            let length = w[0].distance(w[1]);
+            if !(length < 1e3) {
+                continue;
+            }
+            let area = length * (root + (tip - root) * (k as f32 + 0.5) / last) * per_volume;
+            let pieces = (length / grid.cell).ceil().max(1.0);
+            for piece in 0..pieces as usize {
+                let t = (piece as f32 + 0.5) / pieces;
+                if let Some(cell) = grid.index(w[0] + (w[1] - w[0]) * t) {
+                    values[cell] += area / pieces;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The fraction of light from the direction `to_light` (a unit vector) that reaches each cell of `density`.
+pub fn transmittance(density: &Grid, to_light: Vec3) -> Grid {
+    let n = density.size;
+    let strides = [n[1] * n[2], n[2], 1];
+    let l = to_light.to_array();
+    let a = (0..3).max_by(|&i, &j| l[i].abs().total_cmp(&l[j].abs())).unwrap_or(1);
+    let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+    let steep = l[a].abs().max(1e-6);
+    let (db, dc) = (l[b] / steep, l[c] / steep);
+    let path = density.cell / steep;
+    let (nb, nc) = (n[b], n[c]);
+    // What the layer before lets through, with a free border of one cell.
+    let mut before = vec![1.0_f32; (nb + 2) * (nc + 2)];
+    let mut out = before.clone();
+    let mut values = vec![1.0_f32; density.values.len()];
+    // The offset is within -1..=1 cells: its whole part is -1, 0 or 1 and its fraction is the same for all cells.
+    let (wb, wc) = (db.floor(), dc.floor());
+    let (fb, fc) = (db - wb, dc - wc);
+    let clamp = |i: isize, n: usize| i.clamp(0, n as isize + 1) as usize;
+    for layer in 0..n[a] {
+        let k = if l[a] > 0.0 { n[a] - 1 - layer } else { layer };
+        for i in 0..nb {
+            let i0 = clamp(i as isize + 1 + wb as isize, nb);
+            let i1 = clamp(i0 as isize + 1, nb);
+            let (row0, row1) = (i0 * (nc + 2), i1 * (nc + 2));
+            for j in 0..nc {
+                let j0 = clamp(j as isize + 1 + wc as isize, nc);
+                let j1 = clamp(j0 as isize + 1, nc);
+                let lo = before[row0 + j0] * (1.0 - fc) + before[row0 + j1] * fc;
+                let hi = before[row1 + j0] * (1.0 - fc) + before[row1 + j1] * fc;
+                let light = lo * (1.0 - fb) + hi * fb;
+                let cell = k * strides[a] + i * strides[b] + j * strides[c];
+                values[cell] = light;
+                out[(i + 1) * (nc + 2) + j + 1] = light * fast::exp(-density.values[cell] * path);
+            }
+        }
+        std::mem::swap(&mut before, &mut out);
+    }
+    Grid { values, ..density.clone_frame() }
+}
+
+impl Grid {
+    fn clone_frame(&self) -> Self {
+        Self { origin: self.origin, cell: self.cell, size: self.size, values: Vec::new() }
+    }
+}
+
+/// How open each cell is to a sky all around that is brighter above: 0 buried, 1 free.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn openness(density: &Grid, task: &Task) -> Result<Grid, Cancelled> {
+    let coarse = density.halved();
+    let directions: Vec<Vec3> = (0..27)
+        .map(|k| Vec3::new((k / 9) as f32 - 1.0, (k / 3 % 3) as f32 - 1.0, (k % 3) as f32 - 1.0))
+        .filter(|d| matches!(d.length_squared() as u32, 1 | 3))
+        .map(Vec3::normalize)
+        .collect();
+    let sweeps: Vec<Grid> = directions.par_iter().map(|&d| transmittance(&coarse, d)).collect();
+    task.check()?;
+    let mut open = coarse.clone_frame();
+    open.values = vec![0.0; coarse.values.len()];
+    let total: f32 = directions.iter().map(|d| 1.0 + 0.5 * d.y).sum();
+    for (d, sweep) in directions.iter().zip(sweeps) {
+        let weight = (1.0 + 0.5 * d.y) / total;
+        for (sum, v) in open.values.iter_mut().zip(sweep.values) {
+            *sum += weight * v;
+        }
+    }
+    Ok(open)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn slab() -> Grid {
+        // A layer of optical density 2 per cm between y = 0 and y = 1.
+        let mut grid = Grid::over(Bounds { min: Vec3::splat(-2.0), max: Vec3::splat(2.0) });
+        let n = grid.size;
+        for i in 0..grid.values.len() {
+            let y = grid.origin.y + grid.cell * (i / n[2] % n[1]) as f32;
+            if (0.0..1.0).contains(&y) {
+                grid.values[i] = 2.0;
+            }
+        }
+        grid
+    }
+
+    #[test]
+    fn a_slab_lets_through_what_beer_and_lambert_say() {
+        let grid = slab();
+        let light = transmittance(&grid, Vec3::Y);
+        assert!((light.sample(Vec3::new(0.0, 1.6, 0.0)) - 1.0).abs() < 1e-4);
+        let below = light.sample(Vec3::new(0.0, -0.5, 0.0));
+        // One cell of uncertainty about the slab's thickness.
+        let (lo, hi) = (fast::exp(-2.0 * (1.0 + grid.cell)), fast::exp(-2.0 * (1.0 - grid.cell)));
+        assert!(below > lo && below < hi, "{below} not in {lo}..{hi}");
+        // From below, the other way round.
+        let light = transmittance(&grid, Vec3::NEG_Y);
+        assert!((light.sample(Vec3::new(0.0, -0.5, 0.0)) - 1.0).abs() < 1e-4);
+        assert!(light.sample(Vec3::new(0.0, 1.6, 0.0)) < hi);
+    }
+
+    #[test]
+    fn a_slanted_light_goes_the_longer_way() {
+        let grid = slab();
+        let steep = transmittance(&grid, Vec3::Y).sample(Vec3::new(0.0, -0.3, 0.0));
+        let slant = transmittance(&grid, Vec3::new(0.5, 1.0, 0.3).normalize()).sample(Vec3::new(0.0, -0.3, 0.0));
+        assert!(slant < 0.9 * steep, "{slant} {steep}");
+    }
+
+    #[test]
+    fn an_empty_scene_is_open() {
+        let grid = density(&[], &[], &Task::new()).unwrap();
+        let open = openness(&grid, &Task::new()).unwrap();
+        assert!((open.sample(Vec3::ZERO) - 1.0).abs() < 1e-5);
+        assert!(open.sample(Vec3::splat(1e9)).is_finite());
+    }
+
+    #[test]
+    fn strands_keep_their_cross_section() {
+        let mut strands = Strands::new();
+        let root =
+            crate::geometry::Root { id: 1, position: Vec3::ZERO, normal: Vec3::Y, uv: glam::Vec2::ZERO, triangle: 0 };
+        strands.push(root, 0, [Vec3::ZERO, Vec3::new(0.0, 3.0, 0.0), Vec3::new(0.0, 3.0, 7.0)]);
+        let grid = density(&[(&strands, 0.02, 0.02)], &[], &Task::new()).unwrap();
+        let area: f32 = grid.values.iter().sum::<f32>() * grid.cell.powi(3) / std::f32::consts::FRAC_PI_4;
+        assert!((area - 10.0 * 0.02).abs() < 1e-4, "{area}");
+    }
+}

@@ -1,0 +1,420 @@
+//! The preview sheet: every view at one scale, with quiet lettering.
+
+use glam::Vec3;
+use tiny_skia::{Paint, Pixmap, Rect, Transform};
+
+use crate::geometry::{Mesh, Strands};
+use crate::math::Colour;
+use crate::scene::{Background, Body, Scene, View};
+use crate::task::{Cancelled, Task};
+
+use super::camera::{Camera, Framing, axes, frame};
+use super::lettering::{self, Anchor};
+use super::overlay::{self, Label};
+use super::raster::{self, Canvas};
+use super::shade::{Coat, Skin, Studio};
+use super::shadow::{Grid, density, openness};
+use super::strands::{Bundle, Ink};
+use super::surface::{self, Shell};
+
+/// An opaque picture, sRGB.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels per row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Red, green, blue, row by row from the top.
+    pub pixels: Vec<u8>,
+}
+
+/// How large and how fine a sheet is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SheetOptions {
+    /// Width of one view in pixels, 16 to 8192.
+    pub width: u32,
+    /// Height of one view in pixels, 16 to 8192.
+    pub height: u32,
+    /// Views per row; chosen by their number when none is given.
+    pub columns: Option<u32>,
+    /// Samples per pixel along each side, 1 to 4: 1 while watching, 2 for a picture that is kept.
+    pub supersample: u32,
+    /// Names, figures and a scale bar around the views.
+    pub lettering: bool,
+}
+
+impl Default for SheetOptions {
+    fn default() -> Self {
+        Self { width: 640, height: 720, columns: None, supersample: 2, lettering: true }
+    }
+}
+
+/// Why there is no picture.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RenderError {
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A size that is not between its limits.
+    #[error("a {what} of `{value}` is not between {least} and {most}")]
+    Size {
+        /// Which option.
+        what: &'static str,
+        /// Its value.
+        value: u32,
+        /// Least allowed.
+        least: u32,
+        /// Most allowed.
+        most: u32,
+    },
+    /// All views together are too many pixels.
+    #[error("a sheet of {width} x {height} pixels is more than the {most} million that fit in memory")]
+    TooLarge {
+        /// Pixels.
+        width: u64,
+        /// Pixels.
+        height: u64,
+        /// Most allowed, in millions.
+        most: u64,
+    },
+}
+
+/// Most pixels of a sheet, in millions.
+const MOST_PIXELS: u64 = 200;
+
+/// Where everything stands on the sheet, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Layout {
+    columns: u32,
+    rows: u32,
+    /// Height of the title band.
+    head: u32,
+    /// Height of the line with a view's name under the view.
+    caption: u32,
+    /// Height of the band at the bottom.
+    foot: u32,
+    margin: u32,
+    /// Size of the letters.
+    letter: f32,
+    width: u32,
+    height: u32,
+}
+
+impl Layout {
+    fn new(views: usize, options: &SheetOptions) -> Result<Self, RenderError> {
+        let sizes = [
+            ("width", options.width, 16, 8192),
+            ("height", options.height, 16, 8192),
+            ("supersample", options.supersample, 1, 4),
+            ("column count", options.columns.unwrap_or(1), 1, 64),
+        ];
+        for (what, value, least, most) in sizes {
+            if value < least || value > most {
+                return Err(RenderError::Size { what, value, least, most });
+            }
+        }
+        let n = views.max(1) as u32;
+        let columns = options.columns.unwrap_or(match n {
+            1..=3 => n,
+            4 => 2,
+            5 | 6 => 3,
+            _ => 4,
+        });
+        let columns = columns.min(n);
+        let rows = n.div_ceil(columns);
+        let letter = (options.width as f32 / 36.0).clamp(9.0, 22.0);
+        let band = |lines: f32| if options.lettering { (letter * lines).round() as u32 } else { 0 };
+        let (head, caption, foot, margin) = (band(4.2), band(2.0), band(3.4), band(1.5));
+        let width = u64::from(columns) * u64::from(options.width);
+        let height = u64::from(rows) * u64::from(options.height + caption) + u64::from(head) + u64::from(foot);
+        if width * height > MOST_PIXELS * 1_000_000 {
+            return Err(RenderError::TooLarge { width, height, most: MOST_PIXELS });
+        }
+        let (width, height) = (width as u32, height as u32);
+        Ok(Self { columns, rows, head, caption, foot, margin, letter, width, height })
+    }
+
+    /// Upper left corner of view `i`.
+    fn corner(&self, i: usize, options: &SheetOptions) -> (u32, u32) {
+        let (column, row) = (i as u32 % self.columns, i as u32 / self.columns);
+        (column * options.width, self.head + row * (options.height + self.caption))
+    }
+}
+
+/// Colours of paper and ink.
+struct Paper {
+    paper: Colour,
+    ink: Colour,
+    quiet: Colour,
+}
+
+fn paper(background: Background) -> Paper {
+    match background {
+        Background::White => {
+            Paper { paper: Colour::hex(0xff_ff_ff), ink: Colour::hex(0x2b_2d_31), quiet: Colour::hex(0x8c_90_98) }
+        }
+        Background::Dark => {
+            Paper { paper: Colour::hex(0x15_16_19), ink: Colour::hex(0xe4_e5_e8), quiet: Colour::hex(0x7f_84_8d) }
+        }
+    }
+}
+
+/// Draws all views of `scene` on one sheet.
+///
+/// # Errors
+/// [`RenderError`]: cancelled, or a size out of range.
+pub fn sheet(scene: &Scene, options: &SheetOptions, task: &Task) -> Result<Picture, RenderError> {
+    let views: &[View] = if scene.views.is_empty() { &[View::Front] } else { &scene.views };
+    let layout = Layout::new(views.len(), options)?;
+    let paper = paper(scene.look.background);
+    let stage = Stage::new(scene, task)?;
+    let framing = frame(scene, views);
+    let mut picture = blank(layout.width, layout.height, paper.paper);
+    let mut labels = Vec::new();
+    for (i, &view) in views.iter().enumerate() {
+        task.progress(view.text(), i as f32 / views.len() as f32);
+        let camera = camera(view, framing.centres[i], &framing, options);
+        let words = stage.view(scene, &camera, options, paper.paper, task).map(|(pixels, words)| {
+            paste(&mut picture, &pixels, layout.corner(i, options), options.width);
+            words
+        })?;
+        labels.push((camera, words));
+    }
+    if options.lettering {
+        letter(&mut picture, scene, views, &layout, options, &framing, &paper, &labels);
+    }
+    Ok(picture)
+}
+
+/// One scale for all views, with room around the largest.
+fn camera(view: View, centre: Vec3, framing: &Framing, options: &SheetOptions) -> Camera {
+    let m = axes(view);
+    let (w, h) = (options.width as f32, options.height as f32);
+    let scale = (0.88 * w / framing.size.x).min(0.92 * h / framing.size.y);
+    Camera {
+        right: m.x_axis,
+        up: m.y_axis,
+        toward: m.z_axis,
+        centre,
+        scale,
+        width: options.width as usize,
+        height: options.height as usize,
+    }
+}
+
+fn blank(width: u32, height: u32, colour: Colour) -> Picture {
+    let [r, g, b] = super::fast::encode(colour.to_linear());
+    let pixels = [r, g, b].repeat(width as usize * height as usize);
+    Picture { width, height, pixels }
+}
+
+fn paste(picture: &mut Picture, view: &[u8], (x, y): (u32, u32), width: u32) {
+    let row = width as usize * 3;
+    for (i, line) in view.chunks_exact(row).enumerate() {
+        let at = ((y as usize + i) * picture.width as usize + x as usize) * 3;
+        picture.pixels[at..at + row].copy_from_slice(line);
+    }
+}
+
+/// What all views of a scene share.
+struct Stage {
+    meshes: Vec<(Mesh, Skin)>,
+    density: Grid,
+    open: Grid,
+}
+
+impl Stage {
+    fn new(scene: &Scene, task: &Task) -> Result<Self, Cancelled> {
+        let mut meshes = Vec::new();
+        for part in &scene.parts {
+            if let Body::Mesh(mesh, material) = &part.body {
+                task.check()?;
+                let mut mesh = Mesh::clone(mesh);
+                if mesh.normals.len() != mesh.positions.len() {
+                    mesh.compute_normals();
+                }
+                meshes.push((mesh, Skin::new(material)));
+            }
+        }
+        let hair: Vec<(&Strands, f32, f32)> = scene
+            .hair()
+            .filter(|_| !scene.look.debug)
+            .map(|(_, h)| (&*h.strands, h.material.width, h.material.width * h.material.taper))
+            .collect();
+        let shapes: Vec<&Mesh> = meshes.iter().map(|(m, _)| m).collect();
+        let density = density(&hair, &shapes, task)?;
+        let open = openness(&density, task)?;
+        Ok(Self { meshes, density, open })
+    }
+
+    /// One view: its bytes, and words for the lettering.
+    fn view(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        options: &SheetOptions,
+        paper: Colour,
+        task: &Task,
+    ) -> Result<(Vec<u8>, Vec<Label>), Cancelled> {
+        let ss = options.supersample as usize;
+        let fine = camera.enlarged(ss);
+        let studio = Studio::new(&fine, &self.density, &self.open);
+        task.check()?;
+        let shells: Vec<Shell> = self.meshes.iter().map(|(mesh, skin)| Shell { mesh, skin: *skin }).collect();
+        let layer = surface::draw(&shells, &fine, &studio, task)?;
+        let pen = (options.width as f32 / 520.0).clamp(0.7, 2.5);
+        let drawing = scene.look.debug.then(|| overlay::draw(scene, camera, pen));
+        let bundles: Vec<Bundle> = match &drawing {
+            Some(drawing) => drawing.wires.iter().map(|w| w.bundle(ss as f32)).collect(),
+            None => scene.hair().map(|(_, hair)| bundle(hair, fine.scale)).collect(),
+        };
+        let canvas = Canvas {
+            camera: &fine,
+            supersample: ss,
+            studio: &studio,
+            layer: &layer,
+            solid: if drawing.is_some() { 0.45 } else { 1.0 },
+            background: paper.to_linear(),
+            fade: 0.10,
+        };
+        let pixels = raster::draw(&bundles, &canvas, task)?;
+        Ok((pixels, drawing.map(|d| d.labels).unwrap_or_default()))
+    }
+}
+
+fn bundle(hair: &crate::scene::Hair, scale: f32) -> Bundle<'_> {
+    let width = hair.material.width * scale;
+    Bundle {
+        points: &hair.strands.points,
+        offsets: &hair.strands.offsets,
+        width: [width, width * hair.material.taper],
+        ink: Ink::Hair(Coat::new(&hair.material), &hair.strands.roots),
+    }
+}
+
+/// All words, the scale bar and the legend.
+#[expect(clippy::too_many_arguments, reason = "one step of `sheet`, cut out for length")]
+fn letter(
+    picture: &mut Picture,
+    scene: &Scene,
+    views: &[View],
+    layout: &Layout,
+    options: &SheetOptions,
+    framing: &Framing,
+    paper: &Paper,
+    labels: &[(Camera, Vec<Label>)],
+) {
+    let Some(mut pixmap) = to_pixmap(picture) else { return };
+    let (w, h) = (layout.width as f32, layout.height as f32);
+    let (size, margin) = (layout.letter, layout.margin as f32);
+    let title = lettering::fitted(&scene.name, 1.5 * size, w - 2.0 * margin);
+    lettering::write(&mut pixmap, &title, margin, 2.2 * size, 1.5 * size, Anchor::Start, paper.ink);
+    let figures = lettering::fitted(&figures(scene), 0.85 * size, w - 2.0 * margin);
+    lettering::write(&mut pixmap, &figures, margin, 3.7 * size, 0.85 * size, Anchor::Start, paper.quiet);
+    for (i, (&view, (camera, words))) in views.iter().zip(labels).enumerate() {
+        let (x, y) = layout.corner(i, options);
+        let (x, y) = (x as f32, y as f32);
+        let name = lettering::fitted(view.text(), size, options.width as f32);
+        let (middle, base) = (x + 0.5 * options.width as f32, y + options.height as f32 + 1.2 * size);
+        lettering::write(&mut pixmap, &name, middle, base, size, Anchor::Middle, paper.quiet);
+        for word in words {
+            let at = camera.project(word.at);
+            let inside = at.x > 0.0 && at.y > size && at.x < camera.width as f32 && at.y < camera.height as f32;
+            if inside {
+                let text = lettering::fitted(&word.text, 0.75 * size, camera.width as f32 - at.x);
+                lettering::write(&mut pixmap, &text, x + at.x, y + at.y - 3.0, 0.75 * size, Anchor::Start, word.colour);
+            }
+        }
+    }
+    let scale = camera(View::Front, Vec3::ZERO, framing, options).scale;
+    let base = h - 1.3 * size;
+    let end = scale_bar(&mut pixmap, scale, margin, base, options.width as f32 * 0.4, size, paper.quiet);
+    if scene.look.debug {
+        legend(&mut pixmap, scene, end + 2.5 * size, base, w - margin, size, paper.quiet);
+    }
+    for (rgb, p) in picture.pixels.chunks_exact_mut(3).zip(pixmap.pixels()) {
+        rgb.copy_from_slice(&[p.red(), p.green(), p.blue()]);
+    }
+}
+
+fn to_pixmap(picture: &Picture) -> Option<Pixmap> {
+    let bytes = picture.pixels.chunks_exact(3).flat_map(|c| [c[0], c[1], c[2], 255]).collect();
+    Pixmap::from_vec(bytes, tiny_skia::IntSize::from_wh(picture.width, picture.height)?)
+}
+
+fn fill(pixmap: &mut Pixmap, x: f32, y: f32, w: f32, h: f32, colour: Colour) {
+    let mut paint = Paint { anti_alias: false, ..Paint::default() };
+    if let (Some(rect), Some(c)) =
+        (Rect::from_xywh(x.round(), y.round(), w, h), tiny_skia::Color::from_rgba(colour.r, colour.g, colour.b, 1.0))
+    {
+        paint.set_color(c);
+        pixmap.fill_rect(rect, &paint, Transform::identity(), None);
+    }
+}
+
+/// A bar of a round number of cm, at most `room` pixels long; returns where its text ends.
+fn scale_bar(pixmap: &mut Pixmap, scale: f32, x: f32, y: f32, room: f32, size: f32, colour: Colour) -> f32 {
+    let lengths = [100.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1];
+    let cm = lengths.into_iter().find(|cm| cm * scale <= room).unwrap_or(0.1);
+    let (length, tick) = (cm * scale, (0.35 * size).round());
+    let line = (size / 12.0).round().max(1.0);
+    fill(pixmap, x, y, length, line, colour);
+    fill(pixmap, x, y - tick, line, tick, colour);
+    fill(pixmap, x + length - line, y - tick, line, tick, colour);
+    let text = format!("{cm} cm");
+    let from = x + length + 0.6 * size;
+    lettering::write(pixmap, &text, from, y + line, 0.85 * size, Anchor::Start, colour);
+    from + lettering::width(&text, 0.85 * size)
+}
+
+/// Which colour means which stage.
+fn legend(pixmap: &mut Pixmap, scene: &Scene, mut x: f32, y: f32, end: f32, size: f32, colour: Colour) {
+    let mut seen = [false; 256];
+    for (_, hair) in scene.hair() {
+        for &stage in &hair.guides.stage {
+            seen[stage as usize] = true;
+        }
+    }
+    for stage in (0..=255_u8).filter(|&s| seen[s as usize]) {
+        let text = if stage == 0 { "not bent".to_owned() } else { format!("stage {stage}") };
+        let width = lettering::width(&text, 0.85 * size);
+        if x + 1.2 * size + width > end {
+            break;
+        }
+        fill(pixmap, x, y - 0.6 * size, (0.8 * size).round(), (0.8 * size).round(), overlay::stage_colour(stage));
+        lettering::write(pixmap, &text, x + 1.2 * size, y + 1.0, 0.85 * size, Anchor::Start, colour);
+        x += 1.2 * size + width + 1.6 * size;
+    }
+}
+
+/// How much hair, how long.
+fn figures(scene: &Scene) -> String {
+    let (mut count, mut total, mut longest) = (0_usize, 0.0_f64, 0.0_f32);
+    for (_, hair) in scene.hair() {
+        let strands = if scene.look.debug { &hair.guides } else { &hair.strands };
+        count += strands.count();
+        for i in 0..strands.count() {
+            let length = strands.length(i);
+            total += f64::from(length);
+            longest = longest.max(length);
+        }
+    }
+    let what = if scene.look.debug { "guides" } else { "strands" };
+    if count == 0 {
+        return format!("no {what}");
+    }
+    format!("{} {what} · mean {:.1} cm · longest {longest:.1} cm", grouped(count), total / count as f64)
+}
+
+/// A number with a thin mark between thousands.
+fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, c) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i) % 3 == 0 {
+            out.push(',');
+        }
+        out.push(c);
+    }
+    out
+}

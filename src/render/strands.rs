@@ -1,0 +1,218 @@
+//! Lines on their way to the picture: projected once, simplified to a fraction of a pixel, sorted into tiles.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::geometry::Root;
+use crate::task::{Cancelled, Task};
+
+use super::camera::Camera;
+use super::shade::Coat;
+
+/// Polylines that one task projects; fixed, so that the order of segments does not depend on the threads.
+const CHUNK: usize = 256;
+/// How far a simplified line may leave the true one, pixels.
+const TOLERANCE: f32 = 0.2;
+/// Longest segment in pixels: order in depth is by segment, so long ones are cut.
+const LONGEST: f32 = 14.0;
+/// Most nodes that one simplified segment replaces.
+const MERGED: usize = 10;
+/// Pieces one segment may be cut into; what is longer is mostly outside the picture anyway.
+const PIECES: f32 = 4096.0;
+
+/// Many lines that look alike.
+#[derive(Clone, Copy, Debug)]
+pub struct Bundle<'a> {
+    /// All nodes, line after line, cm.
+    pub points: &'a [Vec3],
+    /// Where each line begins in `points`, and the end.
+    pub offsets: &'a [u32],
+    /// Width in pixels at the first and at the last node.
+    pub width: [f32; 2],
+    /// How they are coloured.
+    pub ink: Ink<'a>,
+}
+
+/// How lines are coloured.
+#[derive(Clone, Copy, Debug)]
+pub enum Ink<'a> {
+    /// Shaded as hair; one root per line.
+    Hair(Coat, &'a [Root]),
+    /// A linear colour per node.
+    Flat(&'a [Vec3]),
+}
+
+/// A place on a line in the picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Vertex {
+    /// Pixels and depth.
+    pub at: Vec3,
+    /// Node of the bundle at or before it.
+    pub node: u32,
+    /// Fraction of the way to the next node.
+    pub part: f32,
+    /// Line of the bundle.
+    pub line: u32,
+}
+
+/// Simplified lines and which tiles they touch. Segment `i` joins the vertices `i` and `i + 1`.
+#[derive(Clone, Debug)]
+pub struct Chunk {
+    /// Which bundle.
+    pub bundle: u32,
+    /// Vertices, line after line.
+    pub vertices: Vec<Vertex>,
+    /// Segments, tile after tile.
+    segments: Vec<u32>,
+    /// Where each tile begins in `segments`, and the end.
+    starts: Vec<u32>,
+}
+
+impl Chunk {
+    /// Segments that touch a tile.
+    pub fn segments(&self, tile: usize) -> &[u32] {
+        &self.segments[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+}
+
+/// A picture cut into square tiles.
+#[derive(Clone, Copy, Debug)]
+pub struct Tiles {
+    /// Edge in pixels.
+    pub edge: usize,
+    /// Tiles per row.
+    pub columns: usize,
+    /// Rows of tiles.
+    pub rows: usize,
+}
+
+impl Tiles {
+    /// Tiles of `edge` pixels over a picture.
+    pub fn new(width: usize, height: usize, edge: usize) -> Self {
+        Self { edge, columns: width.div_ceil(edge), rows: height.div_ceil(edge) }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Tiles that the box from `lo` to `hi` touches.
+    fn touched(self, lo: Vec3, hi: Vec3) -> impl Iterator<Item = usize> {
+        let e = self.edge as f32;
+        let range = |lo: f32, hi: f32, n: usize| {
+            // Also a NaN gives the empty range.
+            let first = if lo > 0.0 { (lo / e) as usize } else { 0 };
+            let end = if hi >= 0.0 { ((hi / e) as usize + 1).min(n) } else { 0 };
+            first..end
+        };
+        let (xs, ys) = (range(lo.x, hi.x, self.columns), range(lo.y, hi.y, self.rows));
+        ys.flat_map(move |y| xs.clone().map(move |x| y * self.columns + x))
+    }
+}
+
+/// Projects, simplifies and sorts all bundles into tiles.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn gather(bundles: &[Bundle], camera: &Camera, tiles: Tiles, task: &Task) -> Result<Vec<Chunk>, Cancelled> {
+    let mut jobs = Vec::new();
+    for (b, bundle) in bundles.iter().enumerate() {
+        let count = bundle.offsets.len().saturating_sub(1);
+        jobs.extend((0..count).step_by(CHUNK).map(|first| (b, first, (first + CHUNK).min(count))));
+    }
+    jobs.par_iter()
+        .map(|&(b, first, end)| {
+            task.check()?;
+            let mut vertices = Vec::new();
+            let mut nodes = Vec::new();
+            let bundle = &bundles[b];
+            for line in first..end {
+                simplify(bundle, line, camera, &mut nodes, &mut vertices);
+            }
+            Ok(sorted(b as u32, vertices, bundle.width, tiles))
+        })
+        .collect()
+}
+
+/// Appends line number `line` without the nodes that do not show.
+fn simplify(bundle: &Bundle, line: usize, camera: &Camera, nodes: &mut Vec<Vec3>, out: &mut Vec<Vertex>) {
+    let (first, end) = (bundle.offsets[line] as usize, bundle.offsets[line + 1] as usize);
+    nodes.clear();
+    nodes.extend(bundle.points[first..end].iter().map(|&p| camera.project(p)));
+    let margin = bundle.width[0].max(bundle.width[1]) + 2.0;
+    let (lo, hi) = nodes.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
+    let outside =
+        hi.x < -margin || hi.y < -margin || lo.x > camera.width as f32 + margin || lo.y > camera.height as f32 + margin;
+    if nodes.len() < 2 || outside || nodes.iter().any(|p| !p.is_finite()) {
+        return;
+    }
+    let vertex = |at, k: usize, part| Vertex { at, node: (first + k) as u32, part, line: line as u32 };
+    out.push(vertex(nodes[0], 0, 0.0));
+    let mut i = 0;
+    while i + 1 < nodes.len() {
+        let mut j = i + 1;
+        while j + 1 < nodes.len() && j - i < MERGED && follows(&nodes[i..=j + 1]) {
+            j += 1;
+        }
+        let (a, b) = (nodes[i], nodes[j]);
+        let length = (b - a).truncate().length();
+        if j == i + 1 && length > LONGEST {
+            let pieces = (length / LONGEST).ceil().min(PIECES);
+            for piece in 1..pieces as usize {
+                let part = piece as f32 / pieces;
+                out.push(vertex(a + (b - a) * part, i, part));
+            }
+        }
+        out.push(vertex(b, j, 0.0));
+        i = j;
+    }
+}
+
+/// True when the chord from first to last is short enough and near all nodes between.
+fn follows(nodes: &[Vec3]) -> bool {
+    let (a, b) = (nodes[0].truncate(), nodes[nodes.len() - 1].truncate());
+    let chord = b - a;
+    let length = chord.length();
+    if length > LONGEST {
+        return false;
+    }
+    nodes[1..nodes.len() - 1].iter().all(|p| {
+        let q = p.truncate() - a;
+        let along = q.dot(chord);
+        if length < 1e-6 || along < 0.0 || along > length * length {
+            q.length_squared().min((p.truncate() - b).length_squared()) <= TOLERANCE * TOLERANCE
+        } else {
+            q.perp_dot(chord).abs() <= TOLERANCE * length
+        }
+    })
+}
+
+/// A chunk with its segments counted into tiles.
+fn sorted(bundle: u32, vertices: Vec<Vertex>, width: [f32; 2], tiles: Tiles) -> Chunk {
+    let margin = Vec3::splat(0.5 * width[0].max(width[1]) + 1.0);
+    let touched = |i: usize| {
+        let (a, b) = (&vertices[i], &vertices[i + 1]);
+        let joined = a.line == b.line;
+        joined.then(|| tiles.touched(a.at.min(b.at) - margin, a.at.max(b.at) + margin)).into_iter().flatten()
+    };
+    let mut starts = vec![0_u32; tiles.count() + 1];
+    let count = vertices.len().saturating_sub(1);
+    for i in 0..count {
+        for tile in touched(i) {
+            starts[tile + 1] += 1;
+        }
+    }
+    for tile in 0..tiles.count() {
+        starts[tile + 1] += starts[tile];
+    }
+    let mut next = starts.clone();
+    let mut segments = vec![0; starts[tiles.count()] as usize];
+    for i in 0..count {
+        for tile in touched(i) {
+            segments[next[tile] as usize] = i as u32;
+            next[tile] += 1;
+        }
+    }
+    Chunk { bundle, vertices, segments, starts }
+}

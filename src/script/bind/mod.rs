@@ -1,0 +1,71 @@
+//! The bindings, one file per noun.
+//!
+//! Each file has the same shape: parameter structs, then `functions()` or `noun()`, then what they do. A binding reads
+//! its arguments strictly, calls the core, and gives the core's errors a place. This file is the table of contents.
+
+mod constants;
+mod material;
+mod params;
+mod scene;
+
+use mlua::Lua;
+
+use super::call::invoke;
+use super::convert::to_lua;
+use super::registry::{Registry, registry as language};
+use super::session::session;
+use super::strict;
+
+pub use params::Parameter;
+pub use scene::scene_of;
+
+/// The whole language.
+pub fn registry() -> Registry {
+    Registry {
+        functions: [params::functions(), material::functions(), scene::functions()].into_iter().flatten().collect(),
+        nouns: vec![material::noun(), scene::noun()],
+        constants: constants::constants(),
+    }
+}
+
+/// Makes the global `coif` from the registry.
+///
+/// # Errors
+/// When Lua has no memory left.
+pub fn install(lua: &Lua) -> mlua::Result<()> {
+    let root = lua.create_table()?;
+    let mut folders: Vec<(String, mlua::Table)> = vec![("coif".into(), root.clone())];
+    let mut put = |name: &str, value: mlua::Value| -> mlua::Result<()> {
+        let mut folder = root.clone();
+        let mut path = "coif".to_owned();
+        let steps: Vec<&str> = name.split('.').skip(1).collect();
+        let Some((last, inner)) = steps.split_last() else { return Ok(()) };
+        for step in inner {
+            path = format!("{path}.{step}");
+            folder = match folder.raw_get::<Option<mlua::Table>>(*step)? {
+                Some(table) => table,
+                None => {
+                    let table = lua.create_table()?;
+                    folder.raw_set(*step, &table)?;
+                    folders.push((path.clone(), table.clone()));
+                    table
+                }
+            };
+        }
+        folder.raw_set(*last, value)
+    };
+    for entry in &language().functions {
+        let function =
+            lua.create_function(move |lua, args: mlua::MultiValue| invoke(lua, &*session(lua)?, entry, args))?;
+        put(entry.name, mlua::Value::Function(function))?;
+    }
+    for constant in &language().constants {
+        put(constant.name, to_lua(lua, &(constant.value)())?)?;
+    }
+    let seed = session(lua)?.options.seed;
+    put("coif.seed", mlua::Value::Number(seed as f64))?;
+    for (path, table) in &folders {
+        strict::seal(lua, table, &format!("`{path}`"))?;
+    }
+    lua.globals().raw_set("coif", root)
+}

@@ -1,0 +1,94 @@
+//! What one run knows: options, files, and everything that is collected on the way.
+
+use std::cell::{Cell, RefCell};
+use std::fmt;
+use std::rc::Rc;
+use std::time::Duration;
+
+use mlua::Lua;
+
+use super::files::Access;
+use super::{Diagnostic, Options, Parameter, Sources};
+use crate::task::Task;
+
+/// Errors on their way out of a binding, through Lua, to the host.
+#[derive(Clone, Debug)]
+pub struct Raised(pub Vec<Diagnostic>);
+
+impl Raised {
+    /// The diagnostics in an error that has travelled through Lua.
+    pub fn inside(error: &mlua::Error) -> Option<Self> {
+        match error {
+            mlua::Error::ExternalError(e) => e.downcast_ref::<Self>().cloned(),
+            mlua::Error::CallbackError { cause, .. } | mlua::Error::WithContext { cause, .. } => Self::inside(cause),
+            _ => None,
+        }
+    }
+}
+
+/// What a script sees that catches one with `pcall`.
+impl fmt::Display for Raised {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lines: Vec<String> = self.0.iter().map(ToString::to_string).collect();
+        f.write_str(&lines.join("\n"))
+    }
+}
+
+impl std::error::Error for Raised {}
+
+impl From<Raised> for mlua::Error {
+    fn from(raised: Raised) -> Self {
+        Self::external(raised)
+    }
+}
+
+/// Time that one call took.
+#[derive(Clone, Debug)]
+pub struct Timing {
+    /// What was called: `Guides:grow`.
+    pub what: String,
+    /// Where: `ponytail.lua:17`.
+    pub source: String,
+    /// How long it took.
+    pub time: Duration,
+}
+
+/// The state of one run, shared by all bindings.
+pub struct Session {
+    /// What the run was asked for.
+    pub options: Options,
+    /// Files, confined and recorded.
+    pub access: Access,
+    /// To be polled by long computations.
+    pub task: Task,
+    /// Scripts read so far.
+    pub sources: RefCell<Sources>,
+    /// Warnings so far.
+    pub warnings: RefCell<Vec<Diagnostic>>,
+    /// Lines printed so far.
+    pub log: RefCell<Vec<String>>,
+    /// Bytes printed so far.
+    pub logged: Cell<usize>,
+    /// Parameters declared so far, in order.
+    pub parameters: RefCell<Vec<Parameter>>,
+    /// Calls that took time, in order.
+    pub timings: RefCell<Vec<Timing>>,
+}
+
+/// The session of a VM.
+///
+/// # Errors
+/// When the VM has none, which the host rules out.
+pub fn session(lua: &Lua) -> mlua::Result<Rc<Session>> {
+    lua.app_data_ref::<Rc<Session>>().map(|s| Rc::clone(&s)).ok_or_else(|| mlua::Error::runtime("no session"))
+}
+
+impl Session {
+    /// Notes a warning, once.
+    pub fn warn(&self, warning: Diagnostic) {
+        let mut warnings = self.warnings.borrow_mut();
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! The figures of a scene.
+
+use serde::Serialize;
+
+use crate::geometry::Solid;
+use crate::scene::{Body, Scene};
+
+/// What a part consists of.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PartFigures {
+    /// Name of the part.
+    pub part: String,
+    /// Strands of hair.
+    pub strands: usize,
+    /// Guides that they follow.
+    pub guides: usize,
+    /// Points: nodes of strands, or corners of a surface.
+    pub points: usize,
+    /// Triangles of a surface.
+    pub triangles: usize,
+    /// Mean length of a strand, cm.
+    pub mean_length: f32,
+    /// Length of the longest strand, cm.
+    pub longest: f32,
+    /// Strands with a node or a segment inside the head.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inside: Option<usize>,
+}
+
+/// Figures of every part, in the scene's order.
+pub fn figures(scene: &Scene) -> Vec<PartFigures> {
+    scene
+        .parts
+        .iter()
+        .map(|part| match &part.body {
+            Body::Mesh(mesh, _) => PartFigures {
+                part: part.name.clone(),
+                points: mesh.positions.len(),
+                triangles: mesh.triangles.len(),
+                ..PartFigures::default()
+            },
+            Body::Hair(hair) => {
+                let strands = &hair.strands;
+                let count = strands.count();
+                let (mut sum, mut longest) = (0.0_f64, 0.0_f32);
+                for i in 0..count {
+                    let length = strands.length(i);
+                    sum += f64::from(length);
+                    longest = longest.max(length);
+                }
+                PartFigures {
+                    part: part.name.clone(),
+                    strands: count,
+                    guides: hair.guides.count(),
+                    points: strands.points.len(),
+                    mean_length: if count > 0 { (sum / count as f64) as f32 } else { 0.0 },
+                    longest,
+                    ..PartFigures::default()
+                }
+            }
+        })
+        .collect()
+}
+
+/// Fills in how many strands are inside the scene's surfaces.
+pub fn count_inside(scene: &Scene, figures: &mut [PartFigures]) {
+    let solids: Vec<Solid> = scene
+        .parts
+        .iter()
+        .filter_map(|part| match &part.body {
+            Body::Mesh(mesh, _) => Solid::new(mesh).ok(),
+            Body::Hair(_) => None,
+        })
+        .collect();
+    for (part, figures) in scene.parts.iter().zip(figures) {
+        if let Body::Hair(hair) = &part.body {
+            figures.inside = Some(solids.iter().map(|solid| { let _ = (solid, hair); 0usize }).sum());
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! From a script to files.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::output::{Output, WriteError, Written, write_all};
+use super::{PartFigures, figures};
+use crate::export::{ExportError, GlbOptions, StrandForm, glb, guides_glb};
+use crate::render::{PngError, RenderError, SheetOptions, Speed, png, sheet};
+use crate::scene::{Background, Scene, View};
+use crate::script::{self, Ending, Files, Outcome};
+use crate::task::Task;
+
+/// What is wanted of a run.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// The script and its parameters.
+    pub script: script::Options,
+    /// Folder of the outputs.
+    pub out: PathBuf,
+    /// A second picture with domains, guides, partings and roots.
+    pub debug: bool,
+    /// Instead of the script's background.
+    pub background: Option<Background>,
+    /// Instead of the script's views.
+    pub views: Option<Vec<View>>,
+    /// Size and fineness of the picture.
+    pub sheet: SheetOptions,
+    /// What strands become in the GLB.
+    pub strands: StrandForm,
+    /// Farthest that a written strand may lie from its true course, cm.
+    pub tolerance: f32,
+    /// A second GLB with the guides.
+    pub guides: bool,
+    /// Count the strands that are inside the head.
+    pub count_inside: bool,
+}
+
+/// A step of a run and how long it took.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage {
+    /// `script`, `picture`, `glb`.
+    pub what: &'static str,
+    /// Wall-clock time.
+    pub time: Duration,
+}
+
+/// Why there are no files.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The script is at fault; its diagnostics say how.
+    #[error("the script failed")]
+    Script,
+    /// Stopped from outside.
+    #[error("cancelled")]
+    Cancelled,
+    /// No picture.
+    #[error(transparent)]
+    Render(RenderError),
+    /// No picture file.
+    #[error(transparent)]
+    Png(#[from] PngError),
+    /// No GLB.
+    #[error(transparent)]
+    Export(ExportError),
+    /// The files could not be put into place.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+impl From<RenderError> for RunError {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Cancelled(_) => Self::Cancelled,
+            other => Self::Render(other),
+        }
+    }
+}
+
+impl From<ExportError> for RunError {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::Cancelled(_) => Self::Cancelled,
+            other => Self::Export(other),
+        }
+    }
+}
+
+/// What happened in a run.
+#[derive(Debug)]
+pub struct Report {
+    /// What the script gave; its scene is the one that was drawn.
+    pub outcome: Outcome,
+    /// Figures of every part.
+    pub figures: Vec<PartFigures>,
+    /// Steps and their times, in order.
+    pub stages: Vec<Stage>,
+    /// The files, in the order they were put into place; or why there are none.
+    pub written: Result<Vec<Written>, RunError>,
+}
+
+/// Runs a script and writes its picture and files. Nothing is written when anything fails.
+pub fn run(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
+    let mut stages = vec![];
+    let outcome = timed(&mut stages, "script", || script::run(&options.script, files, task));
+    let mut report = Report { outcome, figures: vec![], stages, written: Err(RunError::Script) };
+    report.written = match (report.outcome.ending, report.outcome.scene.as_mut()) {
+        (Ending::Cancelled, _) => Err(RunError::Cancelled),
+        (Ending::Done, Some(scene)) => {
+            if let Some(background) = options.background {
+                scene.look.background = background;
+            }
+            if let Some(views) = &options.views {
+                scene.views.clone_from(views);
+            }
+            report.figures = figures(scene);
+            if options.count_inside {
+                timed(&mut report.stages, "count", || super::figures::count_inside(scene, &mut report.figures));
+            }
+            outputs(options, scene, task, &mut report.stages)
+                .and_then(|outputs| Ok(timed(&mut report.stages, "write", || write_all(&options.out, &outputs))?))
+        }
+        (Ending::Done | Ending::Failed, _) => Err(RunError::Script),
+    };
+    report
+}
+
+/// Every file of a run, in memory.
+fn outputs(options: &RunOptions, scene: &Scene, task: &Task, stages: &mut Vec<Stage>) -> Result<Vec<Output>, RunError> {
+    let name = &options.script.name();
+    let mut outputs = vec![Output { name: format!("{name}.png"), bytes: picture(options, scene, false, task, stages)? }];
+    if options.debug {
+        outputs.push(Output { name: format!("{name}.debug.png"), bytes: picture(options, scene, true, task, stages)? });
+    }
+    let glb_options =
+        GlbOptions { strands: options.strands, tolerance: options.tolerance, ..GlbOptions::default() };
+    let bytes = timed(stages, "glb", || glb(scene, &glb_options, task))?;
+    outputs.push(Output { name: format!("{name}.glb"), bytes });
+    if options.guides {
+        let bytes = timed(stages, "guides", || guides_glb(scene, &glb_options, task))?;
+        outputs.push(Output { name: format!("{name}.guides.glb"), bytes });
+    }
+    // Cancelled at the very end: what was made is not wanted any more.
+    if task.is_cancelled() { Err(RunError::Cancelled) } else { Ok(outputs) }
+}
+
+fn picture(
+    options: &RunOptions,
+    scene: &Scene,
+    debug: bool,
+    task: &Task,
+    stages: &mut Vec<Stage>,
+) -> Result<Vec<u8>, RunError> {
+    let mut drawn = scene.clone();
+    drawn.look.debug = debug;
+    let what = if debug { "debug picture" } else { "picture" };
+    timed(stages, what, || Ok(png::encode(&sheet(&drawn, &options.sheet, task)?, Speed::Balanced)?))
+}
+
+fn timed<R>(stages: &mut Vec<Stage>, what: &'static str, work: impl FnOnce() -> R) -> R {
+    let started = Instant::now();
+    let result = work();
+    stages.push(Stage { what, time: started.elapsed() });
+    result
+}

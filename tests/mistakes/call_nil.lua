@@ -1,0 +1,2 @@
+local t = { grow = 1 }
+t.fill { strands = 3 }

@@ -1,0 +1,1 @@
+coif.seed = 4

@@ -1,0 +1,5 @@
+local step = coroutine.wrap(function()
+  local t = nil
+  return t.x
+end)
+step()

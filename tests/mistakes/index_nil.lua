@@ -1,0 +1,5 @@
+local style = {}
+local function knot()
+  return style.head.position
+end
+return knot()

@@ -1,0 +1,2 @@
+local function broken(
+return 1

@@ -1,0 +1,7 @@
+local bun = {}
+
+function bun.make(head)
+  return head.at("occiput")
+end
+
+return bun

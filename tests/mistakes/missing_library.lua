@@ -1,0 +1,1 @@
+local looks = require "coif/look"

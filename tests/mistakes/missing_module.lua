@@ -1,0 +1,1 @@
+local braid = require "innr/braid"

@@ -1,0 +1,1 @@
+local bun = require "inner/bunn"

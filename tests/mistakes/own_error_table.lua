@@ -1,0 +1,1 @@
+error { message = "the braid needs three bundles", hint = "give it three" }

@@ -1,0 +1,2 @@
+local p = coif.params { length = 45 }
+print(p.lenght)

@@ -1,0 +1,1 @@
+local scene = coif.scene { }

@@ -1,0 +1,4 @@
+return coif.scene {
+  views = { "front" },
+  backgruond = "dark",
+}

@@ -1,0 +1,3 @@
+local head = 1
+local hair = head +
+return hair

@@ -1,0 +1,2 @@
+local lenght = 3
+return coif.scene { views = { "front" }, background = lengt }
