@@ -23,7 +23,7 @@ crate::params! {
         /// Number of grooves; 0 for a smooth bun.
         grooves: u32 = 0, range(0.0, 60.0);
         /// Depth of the grooves as a fraction of the radius.
-        groove_depth: f32 = 0.12, range(0.0, 0.5);
+        groove_depth: f32 = 0.18, range(0.0, 0.5);
         /// How far the grooves wind about the axis from pole to pole.
         swirl: Angle = Angle::degrees(120.0), range(-3600.0, 3600.0);
         /// Greatest distance of the mesh from the true surface.
@@ -40,7 +40,7 @@ impl BunOptions {
             radius: 3.0,
             length: None,
             grooves: 0,
-            groove_depth: 0.12,
+            groove_depth: 0.18,
             swirl: Angle::degrees(120.0),
             tolerance: 0.03,
         }

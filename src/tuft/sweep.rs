@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::Stroke;
 use super::stroke::{derivative, position};
+use crate::geometry::frames::transport;
 use crate::math::trig;
 
 /// A place on a stroke with its axes, right-handed: `tangent` x `normal` = `binormal`, all unit.
@@ -58,7 +59,7 @@ impl Sweep {
                 let at = position(b, u);
                 // Where a stroke turns back on itself the derivative may vanish: go on as before.
                 let tangent = derivative(b, u).try_normalize().unwrap_or(before.tangent);
-                let normal = reflect_twice(&before, at, tangent);
+                let normal = transport(before.normal, before.position, before.tangent, at, tangent);
                 nodes.push(Node { s: before.s + at.distance(before.position), position: at, tangent, normal });
             }
         }
@@ -113,24 +114,7 @@ impl Sweep {
         let u = ((i % self.steps) as f32 + w) / self.steps as f32;
         let centre = position(bezier, u);
         let tangent = derivative(bezier, u).try_normalize().unwrap_or(a.tangent);
-        let normal = reflect_twice(a, centre, tangent);
+        let normal = transport(a.normal, a.position, a.tangent, centre, tangent);
         Frame { centre, tangent, normal, binormal: tangent.cross(normal) }
     }
-}
-
-/// The normal carried from a node to the next place without turning about the tangent: double reflection (Wang,
-/// Juettler, Zheng, Liu 2008, table 1).
-fn reflect_twice(from: &Node, position: Vec3, tangent: Vec3) -> Vec3 {
-    let v1 = position - from.position;
-    let c1 = v1.length_squared();
-    let (r, t) = if c1 > 1e-14 {
-        (from.normal - v1 * (2.0 / c1 * v1.dot(from.normal)), from.tangent - v1 * (2.0 / c1 * v1.dot(from.tangent)))
-    } else {
-        (from.normal, from.tangent)
-    };
-    let v2 = tangent - t;
-    let c2 = v2.length_squared();
-    let n = if c2 > 1e-14 { r - v2 * (2.0 / c2 * v2.dot(r)) } else { r };
-    // Rounding, and tangents that were only carried on, leave a little of the tangent in it.
-    (n - tangent * n.dot(tangent)).try_normalize().unwrap_or_else(|| tangent.any_orthonormal_vector())
 }
