@@ -141,11 +141,7 @@ pub fn dips(tufts: &Tufts, options: &DipOptions, ground: &Ground, task: &Task) -
                 let deep = p.depth > p.allowed;
                 let dip = Dip { tuft: index, t: p.t, position: p.position, depth: p.depth, thickness: p.thickness };
                 match runs.last_mut() {
-                    Some(last) if deep && inside => {
-                        if dip.depth > last.depth {
-                            *last = dip;
-                        }
-                    }
+                    Some(last) if deep && inside => *last = if dip.depth > last.depth { dip } else { *last },
                     _ if deep => runs.push(dip),
                     _ => {}
                 }

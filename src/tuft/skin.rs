@@ -152,8 +152,8 @@ pub(super) fn write(surface: &Surface, plan: &Plan, unit: &[Vec2], island: Islan
         for j in 0..n {
             let at = i * (n + 1) + j;
             let here = positions[at];
-            let before = (i > 0).then(|| positions[at - n - 1]).unwrap_or(ends[0].centre);
-            let after = (i < last).then(|| positions[at + n + 1]).unwrap_or(ends[1].centre);
+            let before = if i > 0 { positions[at - n - 1] } else { ends[0].centre };
+            let after = if i < last { positions[at + n + 1] } else { ends[1].centre };
             let (a, b) = (here - before, after - here);
             let (la, lb) = (a.length_squared(), b.length_squared());
             let along = if i == 0 && plan.open_root {

@@ -82,11 +82,11 @@ impl Sweep {
         // A spike that stands straight off the head has no side that faces away: take up, then the face's side.
         let length = self.length();
         let outward = move |n: &Node| (n.position - reference).normalize_or_zero();
-        let choices =
-            [up.map(|u| sums(&|_| u)), Some(sums(&outward)), Some(sums(&|_| Vec3::Y)), Some(sums(&|_| Vec3::Z))];
-        let Some((a, b)) = choices.into_iter().flatten().find(|&(a, b)| trig::hypot(a, b) > 0.02 * length) else {
-            return;
-        };
+        let given = move |_: &Node| up.unwrap_or_default();
+        let choices: [Option<&dyn Fn(&Node) -> Vec3>; 4] =
+            [up.is_some().then_some(&given), Some(&outward), Some(&|_| Vec3::Y), Some(&|_| Vec3::Z)];
+        let clear = |&(a, b): &(f32, f32)| trig::hypot(a, b) > 0.02 * length;
+        let Some((a, b)) = choices.into_iter().flatten().map(sums).find(clear) else { return };
         let angle = trig::atan2(b, a);
         let (sin, cos) = (trig::sin(angle), trig::cos(angle));
         for n in &mut self.nodes {

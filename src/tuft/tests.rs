@@ -11,6 +11,7 @@ use super::stroke::derivative;
 use super::*;
 use crate::geometry::bvh::tests::sphere;
 use crate::geometry::{Bvh, Mesh, Solid};
+use crate::math::trig;
 use crate::params::{self, Params, Table, Value};
 use crate::task::Task;
 
@@ -30,7 +31,7 @@ fn points(n: usize) -> Vec<Vec3> {
         .map(|i| {
             let s = i as f32 / (n - 1) as f32;
             let out = toward(0.3 + 0.4 * s, 0.9 - 1.3 * s);
-            out * (RADIUS + 2.5 * (s * PI).sin().max(0.0) + 0.8 * s)
+            out * (RADIUS + 2.5 * trig::sin(s * PI).max(0.0) + 0.8 * s)
         })
         .collect()
 }
@@ -201,14 +202,14 @@ fn diameters_are_met_where_they_should_be() {
             let t = (v.y - 8.0) / 10.0;
             let r = Vec3::new(v.x, 0.0, v.z).length();
             let f = if t <= p { t / p } else { (1.0 - t) / (1.0 - p) };
-            assert!((r - 0.5 * d * (0.5 * PI * f).sin()).abs() < 2e-3 * d, "{t} {r}");
+            assert!((r - 0.5 * d * trig::sin(0.5 * PI * f)).abs() < 2e-3 * d, "{t} {r}");
         }
     }
     // Paper 3: greatest at the middle; closed at both ends without alpha and beta, open with.
     let e = |alpha, beta| Section::of(Profile::Elliptic { horizontal: 2.0, vertical: 1.0, alpha, beta });
     assert_eq!((e(0.0, 0.0).radii(0.0), e(0.0, 0.0).radii(1.0)), ((0.0, 0.0), (0.0, 0.0)));
     assert!((e(0.0, 0.0).radii(0.5).0 - 2.0).abs() < 1e-6 && (e(0.0, 0.0).radii(0.5).1 - 1.0).abs() < 1e-6);
-    assert!((e(0.5, 0.0).radii(0.0).0 - 2.0 * (PI / 3.0).sin()).abs() < 1e-5);
+    assert!((e(0.5, 0.0).radii(0.0).0 - 2.0 * trig::sin(PI / 3.0)).abs() < 1e-5);
     assert!((e(0.0, 1.0).radii(1.0).0 - 2.0).abs() < 1e-5);
     // With p = 50 both papers give the same tuft.
     let (round, ellipse) = (
@@ -445,7 +446,7 @@ fn a_single_tuft_goes_all_the_way_around() {
     let solid = ball();
     let a = falling(0.4, 0.6, 2.0);
     let options = FillOptions { around: 25.0, everywhere: true, ..FillOptions::default() };
-    let made = fill(&[a.clone()], &options, &ground(&solid)).unwrap().value;
+    let made = fill(std::slice::from_ref(&a), &options, &ground(&solid)).unwrap().value;
     assert_eq!(made.len(), 14);
     assert_eq!(made, fill(&[a.clone(), a.clone()], &options, &ground(&solid)).unwrap().value);
     for (l, t) in made.iter().enumerate() {
@@ -518,7 +519,10 @@ fn fills_refuse_what_does_not_fit() {
     assert_eq!(e, TuftError::SectionKinds { number: 2, kind: "elliptic", before: "round" });
     for bad in [0.0, 101.0, f32::NAN] {
         let options = FillOptions { around: bad, ..FillOptions::default() };
-        assert!(matches!(fill(&[a.clone()], &options, &g), Err(TuftError::OutOfRange { what: "around", .. })));
+        assert!(matches!(
+            fill(std::slice::from_ref(&a), &options, &g),
+            Err(TuftError::OutOfRange { what: "around", .. })
+        ));
     }
     let near = fill(&[a, falling(0.05, 0.5, 2.0)], &options, &g).unwrap();
     assert!(near.value.is_empty() && near.warnings.len() == 1);
