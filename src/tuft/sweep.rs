@@ -83,10 +83,12 @@ impl Sweep {
         let length = self.length();
         let outward = move |n: &Node| (n.position - reference).normalize_or_zero();
         let given = move |_: &Node| up.unwrap_or_default();
-        let choices: [Option<&dyn Fn(&Node) -> Vec3>; 4] =
-            [up.is_some().then_some(&given), Some(&outward), Some(&|_| Vec3::Y), Some(&|_| Vec3::Z)];
+        let mut choices: Vec<&dyn Fn(&Node) -> Vec3> = vec![&outward, &|_| Vec3::Y, &|_| Vec3::Z];
+        if up.is_some() {
+            choices.insert(0, &given);
+        }
         let clear = |&(a, b): &(f32, f32)| trig::hypot(a, b) > 0.02 * length;
-        let Some((a, b)) = choices.into_iter().flatten().map(sums).find(clear) else { return };
+        let Some((a, b)) = choices.into_iter().map(sums).find(clear) else { return };
         let angle = trig::atan2(b, a);
         let (sin, cos) = (trig::sin(angle), trig::cos(angle));
         for n in &mut self.nodes {
