@@ -119,11 +119,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if seconds > 0.0 && seconds <= 1e6 {
-        Ok(Duration::from_secs_f64(seconds))
-    } else {
-        Err("it takes more than 0 seconds".to_owned())
-    }
+    if seconds > 0.0 && seconds <= 1e6 { Ok(Duration::from_secs_f64(seconds)) } else { Err("it takes more than 0 seconds".to_owned()) }
 }
 
 fn tolerance(text: &str) -> Result<f32, String> {

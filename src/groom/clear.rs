@@ -146,11 +146,7 @@ impl Clear<'_> {
             let smooth = sum / weight.max(1.0);
             let own = scratch.push[k];
             // A node that must move moves far enough along its own push, whatever its neighbours want.
-            let short = if own == Vec3::ZERO {
-                Vec3::ZERO
-            } else {
-                own * (1.0 - smooth.dot(own) / own.length_squared()).max(0.0)
-            };
+            let short = if own == Vec3::ZERO { Vec3::ZERO } else { own * (1.0 - smooth.dot(own) / own.length_squared()).max(0.0) };
             points[k] += smooth + short;
         }
     }

@@ -141,10 +141,8 @@ pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
     let mut warnings = Vec::new();
     if alone > 0 {
         warnings.push(
-            Warning::new(format!(
-                "`{alone}` of {n} strands were left out: no guide grows on their side of the parting"
-            ))
-            .hint("ask for more guides, or move the parting"),
+            Warning::new(format!("`{alone}` of {n} strands were left out: no guide grows on their side of the parting"))
+                .hint("ask for more guides, or move the parting"),
         );
     }
     if stuck > 0 {
@@ -206,7 +204,8 @@ impl Prepared {
             )
             .collect();
         let nearest = Nearest::new(guides.roots.iter().map(|r| r.position).collect());
-        let mut prepared = Self { nodes, points, tangents, normals, stages, lengths, nearest, agreements: Vec::new() };
+        let mut prepared =
+            Self { nodes, points, tangents, normals, stages, lengths, nearest, agreements: Vec::new() };
         prepared.agreements = (0..n)
             .into_par_iter()
             .map_init(Vec::new, |found, g| {

@@ -510,7 +510,9 @@ impl Worker {
         }
         self.displace(input, &from.roots[i], out);
         match input.solid {
-            Some(solid) => Clear { body: Body { solid, margin: input.margin } }.strand(out, &mut self.scratch),
+            Some(solid) => {
+                Clear { body: Body { solid, margin: input.margin } }.strand(out, &mut self.scratch)
+            }
             None => Outcome::Clear,
         }
     }
@@ -539,20 +541,8 @@ impl Worker {
             let hand = match natural.turn {
                 Turn::Right => 1.0,
                 Turn::Left => -1.0,
-                Turn::Mirrored => {
-                    if is_right {
-                        -1.0
-                    } else {
-                        1.0
-                    }
-                }
-                Turn::Random => {
-                    if key.with(3).unit() < 0.5 {
-                        -1.0
-                    } else {
-                        1.0
-                    }
-                }
+                Turn::Mirrored => if is_right { -1.0 } else { 1.0 },
+                Turn::Random => if key.with(3).unit() < 0.5 { -1.0 } else { 1.0 },
             };
             let tilt = if is_right { -natural.tilt } else { natural.tilt };
             let (sin, cos) = (trig::sin(tilt), trig::cos(tilt));

@@ -37,8 +37,15 @@ pub struct Call<'a> {
 /// # Errors
 /// A [`Raised`] with every problem of the arguments, or what the function raised.
 pub fn invoke(lua: &Lua, session: &Session, entry: &'static Entry, args: MultiValue) -> mlua::Result<mlua::Value> {
-    let mut call =
-        Call { session, lua, entry, this: None, table: Table::default(), functions: vec![], stack: OnceCell::new() };
+    let mut call = Call {
+        session,
+        lua,
+        entry,
+        this: None,
+        table: Table::default(),
+        functions: vec![],
+        stack: OnceCell::new(),
+    };
     call.take(args)?;
     let started = Instant::now();
     let value = (entry.call)(&call)?;
@@ -147,9 +154,7 @@ impl Call<'_> {
     pub fn source(&self) -> Arc<str> {
         match self.stack().first() {
             Some(frame) => {
-                let file = Path::new(&frame.file)
-                    .strip_prefix(self.session.options.folder())
-                    .unwrap_or(Path::new(&frame.file));
+                let file = Path::new(&frame.file).strip_prefix(self.session.options.folder()).unwrap_or(Path::new(&frame.file));
                 format!("{}:{}", file.display(), frame.line).into()
             }
             None => "".into(),

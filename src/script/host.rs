@@ -129,8 +129,7 @@ pub fn run(options: &Options, files: Arc<dyn Files>, task: &Task) -> Outcome {
 fn script(session: &Rc<Session>) -> Result<Scene, Raised> {
     let path = &session.options.script;
     let file = path.to_string_lossy().into_owned();
-    let bytes =
-        session.access.read(path).map_err(|e| Raised(vec![Diagnostic::error(e.to_string()).hint_opt(e.hint())]))?;
+    let bytes = session.access.read(path).map_err(|e| Raised(vec![Diagnostic::error(e.to_string()).hint_opt(e.hint())]))?;
     let text = String::from_utf8(bytes)
         .map_err(|_| Raised(vec![Diagnostic::error(format!("`{file}` is not a text in UTF-8"))]))?;
     session.sources.borrow_mut().insert(file.clone(), text.clone());

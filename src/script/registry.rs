@@ -100,12 +100,7 @@ pub struct Noun {
 
 impl Noun {
     /// The noun of an object type.
-    pub fn of<T: Object>(
-        doc: &'static str,
-        methods: Vec<Entry>,
-        getters: Vec<Getter>,
-        text: fn(&Handle) -> String,
-    ) -> Self {
+    pub fn of<T: Object>(doc: &'static str, methods: Vec<Entry>, getters: Vec<Getter>, text: fn(&Handle) -> String) -> Self {
         Self { name: T::NAME, doc, methods, getters, text }
     }
 }

@@ -129,12 +129,12 @@ pub fn run(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
 /// Every file of a run, in memory.
 fn outputs(options: &RunOptions, scene: &Scene, task: &Task, stages: &mut Vec<Stage>) -> Result<Vec<Output>, RunError> {
     let name = &options.script.name();
-    let mut outputs =
-        vec![Output { name: format!("{name}.png"), bytes: picture(options, scene, false, task, stages)? }];
+    let mut outputs = vec![Output { name: format!("{name}.png"), bytes: picture(options, scene, false, task, stages)? }];
     if options.debug {
         outputs.push(Output { name: format!("{name}.debug.png"), bytes: picture(options, scene, true, task, stages)? });
     }
-    let glb_options = GlbOptions { strands: options.strands, tolerance: options.tolerance, ..GlbOptions::default() };
+    let glb_options =
+        GlbOptions { strands: options.strands, tolerance: options.tolerance, ..GlbOptions::default() };
     let bytes = timed(stages, "glb", || glb(scene, &glb_options, task))?;
     outputs.push(Output { name: format!("{name}.glb"), bytes });
     if options.guides {

@@ -14,17 +14,8 @@ const EAR: Ear = Ear {
 };
 
 /// Slices of the face without its features: front depth over height.
-const FRONT: [[f32; 2]; 9] = [
-    [-10.4, 7.6],
-    [-9.0, 8.4],
-    [-7.3, 8.3],
-    [-5.6, 8.85],
-    [-3.5, 9.2],
-    [-1.0, 8.9],
-    [1.7, 8.8],
-    [3.4, 9.35],
-    [6.0, 9.2],
-];
+const FRONT: [[f32; 2]; 9] =
+    [[-10.4, 7.6], [-9.0, 8.4], [-7.3, 8.3], [-5.6, 8.85], [-3.5, 9.2], [-1.0, 8.9], [1.7, 8.8], [3.4, 9.35], [6.0, 9.2]];
 /// The same: half breadth over height.
 const SIDE: [[f32; 2]; 7] =
     [[-10.4, 3.9], [-9.0, 4.5], [-7.0, 5.3], [-4.5, 6.0], [-1.0, 6.65], [2.0, 6.75], [6.0, 6.6]];
@@ -81,8 +72,7 @@ fn squircle(x: f32, z: f32, w: f32, l: f32) -> f32 {
     let (a, b) = (x / w, z / l);
     let (aa, bb) = (a * a, b * b);
     let norm = (aa * aa + 1.5 * aa * bb + bb * bb).max(1e-6).sqrt().sqrt();
-    let slope =
-        Vec2::new(a * (4.0 * aa + 3.0 * bb) / w, b * (4.0 * bb + 3.0 * aa) / l).length() / (4.0 * norm * norm * norm);
+    let slope = Vec2::new(a * (4.0 * aa + 3.0 * bb) / w, b * (4.0 * bb + 3.0 * aa) / l).length() / (4.0 * norm * norm * norm);
     (norm - 1.0) / slope.max(0.05)
 }
 
