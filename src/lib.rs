@@ -16,6 +16,7 @@ pub mod geometry;
 pub mod head;
 
 pub mod groom;
+pub mod tuft;
 
 pub mod scene;
 
