@@ -27,6 +27,10 @@ pub trait FieldType: Sized {
     fn unit() -> Option<&'static str> {
         None
     }
+    /// The fields, when it is a struct or a list of structs.
+    fn nested() -> Option<fn() -> Vec<Field>> {
+        None
+    }
     /// As a number, for the range check.
     fn number(&self) -> Option<f64> {
         None

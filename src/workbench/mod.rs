@@ -4,9 +4,11 @@
 //! and after an error the folder is as it was before.
 
 mod figures;
+mod new;
 mod output;
 mod run;
 
 pub use figures::{PartFigures, figures};
+pub use new::{DEFINITIONS, NewError, api, new};
 pub use output::{Output, WriteError, Written, write_all};
 pub use run::{Report, RunError, RunOptions, Stage, run};
