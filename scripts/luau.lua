@@ -17,13 +17,13 @@
 ---@operator unm: vector
 
 ---A place: a vector or three numbers, in cm.
----@alias coif.Point vector|number[]
+---@alias coif.Point vector|{ [1]: number, [2]: number, [3]: number }
 
 ---Where to: a vector or three numbers, of any length but zero.
----@alias coif.Direction vector|number[]
+---@alias coif.Direction vector|{ [1]: number, [2]: number, [3]: number }
 
 ---A colour: `"#rrggbb"`, or red, green and blue from 0 to 1.
----@alias coif.Colour string|vector|number[]
+---@alias coif.Colour string|vector|{ [1]: number, [2]: number, [3]: number }
 
 ---Luau's vectors.
 ---@class vectorlib

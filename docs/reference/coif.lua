@@ -17,13 +17,13 @@
 ---@operator unm: vector
 
 ---A place: a vector or three numbers, in cm.
----@alias coif.Point vector|number[]
+---@alias coif.Point vector|{ [1]: number, [2]: number, [3]: number }
 
 ---Where to: a vector or three numbers, of any length but zero.
----@alias coif.Direction vector|number[]
+---@alias coif.Direction vector|{ [1]: number, [2]: number, [3]: number }
 
 ---A colour: `"#rrggbb"`, or red, green and blue from 0 to 1.
----@alias coif.Colour string|vector|number[]
+---@alias coif.Colour string|vector|{ [1]: number, [2]: number, [3]: number }
 
 ---Luau's vectors.
 ---@class vectorlib
@@ -224,8 +224,8 @@ coif.material = {}
 ---@field max? number # Greatest value of a number.
 ---@field integer? boolean # True when a number must be whole. [default false]
 ---@field unit? string # Unit of a number, for people.
----@field doc? string # What it means, in one line. [default ""]
----@field choices? string[] # What a text may be. [default {}]
+---@field doc? string # What it means, in one line.
+---@field choices? string[] # What a text may be.
 
 ---What `coif.params` takes.
 ---@class (exact) coif.params.fields
@@ -244,8 +244,8 @@ function coif.params(fields) end
 ---@field unit? "mm"|"cm"|"dm"|"m"|"in"|"ft" # What one unit of the file is; metres for glTF, centimetres for OBJ when left out.
 ---@field up? "x"|"y"|"z"|"-x"|"-y"|"-z" # The axis of the file that points up; "y" when left out.
 ---@field forward? "x"|"y"|"z"|"-x"|"-y"|"-z" # The axis of the file that the face looks along; "z", or "-y" when z is up.
----@field groups? string[] # Only these groups, objects or materials of the file; everything when left out. [default {}]
----@field landmarks? table<string, coif.Point> # Landmarks by name, in the file's own axes and unit, instead of those found from the shape. [default {}]
+---@field groups? string[] # Only these groups, objects or materials of the file; everything when left out.
+---@field landmarks? table<string, coif.Point> # Landmarks by name, in the file's own axes and unit, instead of those found from the shape.
 
 ---The head that hair grows on: the built-in mannequin, or a mesh from a file. `--head FILE` on the command line
 ---takes the place of either.
@@ -391,7 +391,7 @@ function coif.material.hair(fields) end
 
 ---What `coif.scene` takes.
 ---@class (exact) coif.scene.fields
----@field [integer] any # The head and the hair, in any number and order; lists in the list are taken apart. [default {}]
+---@field [integer] any # The head and the hair, in any number and order; lists in the list are taken apart.
 ---@field views? ("front"|"back"|"left"|"right"|"top"|"three-quarter"|"back-three-quarter")[] # The views of the preview, in order. [default { "front", "left", "back" }]
 ---@field background? "white"|"dark" # The colour behind everything. [default "white"]
 ---@field skin? coif.Colour # Colour of the head. [default "#d9b8a3"]
@@ -564,7 +564,7 @@ local Guides = {}
 ---What `Guides:grow` takes.
 ---@class (exact) coif.Guides.grow.fields
 ---@field global? coif.Queue # The queue for all guides.
----@field locals? coif.Guides.grow.locals[] # Queues for some of the guides. [default {}]
+---@field locals? coif.Guides.grow.locals[] # Queues for some of the guides.
 ---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.05]
 
 ---Grows guides through queues of domains. The global queue acts on every guide; of the local queues the first one

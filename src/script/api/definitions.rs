@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::words::{annotation, class, limits, one_line, returned, shared, wrap};
+use super::words::{annotation, class, functions as all_functions, limits, one_line, returned, shared, wrap};
 use crate::params::{Field, Kind, Value};
 use crate::script::bind::SEED;
 use crate::script::object::OPERATORS;
@@ -25,7 +25,7 @@ pub fn definitions(registry: &Registry) -> String {
     for folder in folders(registry) {
         let _ = write!(out, "\n---@class {folder}\n{folder} = {{}}\n");
     }
-    for entry in &registry.functions {
+    for entry in all_functions(registry) {
         function(&mut out, registry, entry, entry.name);
     }
     for one in &registry.nouns {
@@ -51,7 +51,7 @@ fn kind_of(constant: &Constant) -> &'static str {
 /// `coif.domain`, `coif.material`, in the order they are met.
 fn folders(registry: &Registry) -> Vec<String> {
     let mut folders: Vec<String> = vec![];
-    for entry in &registry.functions {
+    for entry in all_functions(registry) {
         let steps: Vec<&str> = entry.name.split('.').collect();
         for depth in 2..steps.len() {
             let folder = steps[..depth].join(".");

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::Document;
-use super::words::{class, default, first_sentence, number, one_line, shared};
+use super::words::{class, default, first_sentence, functions as all_functions, number, one_line, shared};
 use crate::params::{Field, Kind};
 use crate::script::bind::SEED;
 use crate::script::object::OPERATORS;
@@ -28,7 +28,7 @@ fn index(registry: &Registry) -> String {
     let mut out =
         format!("{MADE}# Reference\n\nEverything that a hairstyle script can call, from the program itself.\n");
     out.push_str("\n## Functions\n\n| function | gives | |\n| --- | --- | --- |\n");
-    for entry in &registry.functions {
+    for entry in all_functions(registry) {
         let (anchor, gives) = (anchor(entry.name), linked(registry, entry.returns));
         let about = cell(&first_sentence(entry.doc));
         let _ = writeln!(out, "| [`{}`](functions.md#{anchor}) | {gives} | {about} |", entry.name);
@@ -49,7 +49,7 @@ fn index(registry: &Registry) -> String {
 
 fn functions(registry: &Registry) -> String {
     let mut out = format!("{MADE}# Functions\n");
-    for entry in &registry.functions {
+    for entry in all_functions(registry) {
         function(&mut out, registry, entry);
     }
     out.push_str("\n## Constants\n\n| name | value | |\n| --- | --- | --- |\n");
@@ -87,7 +87,7 @@ fn noun_page(registry: &Registry, noun: &Noun) -> String {
 
 /// Links to what gives a noun, other than its own methods.
 fn makers<'a>(registry: &'a Registry, noun: &'a str) -> impl Iterator<Item = String> + 'a {
-    let functions = registry.functions.iter().map(|e| (e, "functions"));
+    let functions = all_functions(registry).map(|e| (e, "functions"));
     let methods = registry.nouns.iter().filter(move |n| n.name != noun);
     let methods = methods.flat_map(|n| n.methods.iter().map(move |e| (e, n.name)));
     functions

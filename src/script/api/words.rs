@@ -47,7 +47,7 @@ pub fn class(entry: &Entry) -> String {
 
 /// The function of that name that takes a table.
 fn table_function<'a>(registry: &'a Registry, name: &str) -> Option<&'a Entry> {
-    registry.functions.iter().find(|e| e.name == name && e.shape == Shape::Table)
+    functions(registry).find(|e| e.name == name && e.shape == Shape::Table)
 }
 
 /// The function whose table a struct is, unless the struct is part of that very function's table.
@@ -131,9 +131,14 @@ pub fn limits(field: &Field) -> String {
     if parts.is_empty() { String::new() } else { format!(" [{}]", parts.join("; ")) }
 }
 
-/// The default, unless it is to leave it out.
+/// The default, unless it is nothing: no value, no text, an empty list.
 pub fn default(field: &Field) -> Option<String> {
-    field.default.as_ref().filter(|d| !d.is_empty() && d.as_str() != "nil").cloned()
+    field.default.as_ref().filter(|d| !["", "nil", "\"\"", "{}"].contains(&d.as_str())).cloned()
+}
+
+/// Every function below `coif`.
+pub fn functions(registry: &Registry) -> impl Iterator<Item = &Entry> {
+    registry.functions.iter()
 }
 
 /// `40000`, `0.005`, without an exponent.
