@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use coif::export::{GlbOptions, StrandForm, glb};
+use coif::export::{CyHairOptions, GlbOptions, StrandForm, UsdaOptions, cyhair, glb, usda};
 use coif::geometry::{Root, Strands};
 use coif::math::{rng::Key, trig};
 use coif::scene::{Body, Hair, HairMaterial, Look, Overlay, Part, Scene, View};
@@ -71,23 +71,38 @@ fn write(bencher: Bencher, options: &GlbOptions) {
 }
 
 /// The machine's limit: as many bytes as `ribbons` writes, into fresh memory.
-#[divan::bench]
+#[divan::bench(sample_count = 12)]
 fn store_the_bytes_of_ribbons(bencher: Bencher) {
     let bytes = glb(&scene(), &GlbOptions::default(), &Task::new()).expect("a good scene").len();
     bencher.counter(BytesCount::new(bytes)).bench_local(|| vec![1_u8; bytes]);
 }
 
-#[divan::bench]
+#[divan::bench(sample_count = 12)]
 fn ribbons(bencher: Bencher) {
     write(bencher, &GlbOptions::default());
 }
 
-#[divan::bench]
+#[divan::bench(sample_count = 12)]
 fn ribbons_with_every_node(bencher: Bencher) {
     write(bencher, &GlbOptions { tolerance: 0.0, ..GlbOptions::default() });
 }
 
-#[divan::bench]
+#[divan::bench(sample_count = 12)]
 fn lines(bencher: Bencher) {
     write(bencher, &GlbOptions { strands: StrandForm::Lines, ..GlbOptions::default() });
+}
+
+#[divan::bench(sample_count = 12)]
+fn usd_text(bencher: Bencher) {
+    let (scene, task) = (scene(), Task::new());
+    let options = UsdaOptions { guides: false, ..UsdaOptions::default() };
+    let bytes = usda(&scene, &options, &task).expect("a good scene").len();
+    bencher.counter(BytesCount::new(bytes)).bench_local(|| usda(&scene, &options, &task));
+}
+
+#[divan::bench(sample_count = 12)]
+fn hair_file(bencher: Bencher) {
+    let (scene, task) = (scene(), Task::new());
+    let bytes = cyhair(&scene, &CyHairOptions::default(), &task).expect("a good scene").len();
+    bencher.counter(BytesCount::new(bytes)).bench_local(|| cyhair(&scene, &CyHairOptions::default(), &task));
 }

@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::show::Show;
 use crate::export::StrandForm;
+use crate::head::load::Unit;
 use crate::scene::{Background, View};
 
 /// Hairstyles that are written: runs a Lua script, draws its picture, exports its hair.
@@ -52,6 +53,9 @@ pub struct ScriptArguments {
     /// Head to style instead of the one that the script's `coif.head()` gives: OBJ, glTF or GLB
     #[arg(long, value_name = "FILE")]
     pub head: Option<PathBuf>,
+    /// What one unit of that head's file is, if not what its format says [mm, cm, dm, m, in, ft]
+    #[arg(long, value_name = "UNIT", requires = "head", value_parser = unit)]
+    pub head_unit: Option<Unit>,
     /// Let the script read below this folder too, besides its own; may be repeated
     #[arg(long, value_name = "DIR")]
     pub allow: Vec<PathBuf>,
@@ -138,7 +142,11 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if seconds > 0.0 && seconds <= 1e6 { Ok(Duration::from_secs_f64(seconds)) } else { Err("it takes more than 0 seconds".to_owned()) }
+    if seconds > 0.0 && seconds <= 1e6 {
+        Ok(Duration::from_secs_f64(seconds))
+    } else {
+        Err("it takes more than 0 seconds".to_owned())
+    }
 }
 
 fn tolerance(text: &str) -> Result<f32, String> {
@@ -159,6 +167,10 @@ fn background(text: &str) -> Result<Background, String> {
 
 fn view(text: &str) -> Result<View, String> {
     choice(text, View::TEXTS, View::parse)
+}
+
+fn unit(text: &str) -> Result<Unit, String> {
+    choice(text, Unit::TEXTS, Unit::parse)
 }
 
 fn form(text: &str) -> Result<StrandForm, String> {

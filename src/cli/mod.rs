@@ -75,7 +75,9 @@ fn command_run(arguments: &RunArguments) -> u8 {
     let options = run_options(arguments);
     let progress = Arc::new(Progress::new(!arguments.quiet));
     let bar = Arc::clone(&progress);
-    let report = match barrier::run(&arguments.script, move |task| workbench::run(&options, Arc::new(Disk), &bar.listen(task))) {
+    let report = match barrier::run(&arguments.script, move |task| {
+        workbench::run(&options, Arc::new(Disk), &bar.listen(task))
+    }) {
         Ok(report) => report,
         Err(code) => return code,
     };
@@ -132,6 +134,7 @@ fn script_options(arguments: &ScriptArguments) -> script::Options {
         set: arguments.set.iter().cloned().collect::<BTreeMap<_, _>>(),
         seed: arguments.seed,
         head: arguments.head.clone(),
+        head_unit: arguments.head_unit,
         allow: arguments.allow.clone(),
         time_limit: arguments.time_limit,
         ..script::Options::new(&arguments.script)

@@ -2,8 +2,8 @@
 
 use std::io::IsTerminal;
 
-use crate::workbench::terminal::{Protocol, Window, draw};
 use crate::workbench::Written;
+use crate::workbench::terminal::{Protocol, Window, draw};
 
 /// What `--show` says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -47,6 +47,18 @@ pub enum ExportError {
         /// How many there are.
         count: usize,
     },
+    /// A strand has more segments than the format can count.
+    #[error("part `{part}`: strand {strand} has {segments} segments, more than the {limit} that the format can count")]
+    TooManySegments {
+        /// Name of the part.
+        part: String,
+        /// Index of the strand.
+        strand: usize,
+        /// How many it has.
+        segments: usize,
+        /// How many it may have.
+        limit: usize,
+    },
     /// The scene's placement is not made of a move, a turn and a scale.
     #[error("the placement of the scene is not a move, a turn and a scale: `{placement}`")]
     Placement {

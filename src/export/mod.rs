@@ -5,16 +5,25 @@
 //! threads.
 //!
 //! * [`glb`](fn@glb): binary glTF 2.0, the head and the hair as ribbons or lines; [`guides_glb`]: the guides alone.
+//! * [`usda`](fn@usda): USD as text, the head as a mesh, the hair and its guides as curves.
+//! * [`cyhair`](fn@cyhair): the `.hair` files of Cem Yuksel, strands alone.
 
+mod appearance;
+pub mod cyhair;
 mod error;
 pub mod glb;
 mod reduce;
+pub mod usda;
 
+pub use cyhair::{CyHairOptions, cyhair};
 pub use error::ExportError;
 pub use glb::{GlbOptions, StrandForm, glb, guides_glb};
+pub use usda::{UsdaOptions, usda};
 
-use crate::geometry::Strands;
+use std::borrow::Cow;
+
 use crate::geometry::strands::StrandsError;
+use crate::geometry::{Mesh, Strands};
 use crate::scene::{Hair, Part};
 
 /// Checks what every format relies on: finite nodes, and no strand that names a guide or source that is not there.
@@ -46,5 +55,20 @@ fn check_sources(part: &Part, strands: &Strands) -> Result<(), ExportError> {
             Err(ExportError::Dangling { part: part.name.clone(), strand, what: "source", index, count })
         }
         None => Ok(()),
+    }
+}
+
+fn check_tolerance(tolerance: f32) -> Result<(), ExportError> {
+    if tolerance.is_finite() && tolerance >= 0.0 { Ok(()) } else { Err(ExportError::Tolerance { tolerance }) }
+}
+
+/// The mesh with normals: its own, or computed ones when it has none.
+fn with_normals(mesh: &Mesh) -> Cow<'_, Mesh> {
+    if mesh.normals.is_empty() {
+        let mut mesh = mesh.clone();
+        mesh.compute_normals();
+        Cow::Owned(mesh)
+    } else {
+        Cow::Borrowed(mesh)
     }
 }

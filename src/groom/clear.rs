@@ -81,13 +81,12 @@ impl Clear<'_> {
             let (a, b) = (points[k - 1], points[k]);
             let before = clearance;
             clearance = solid.clearance(b).max(0.0);
-            let way = a.distance(b);
-            // Two balls free of the surface that together cover the segment.
-            if clearance >= self.body.margin && (k == 1 || before + clearance > way) {
+            if clearance >= self.body.margin && (k == 1 || is_covered(solid, (a, before), (b, clearance), 2)) {
                 was_inside = false;
                 continue;
             }
             let margin = self.margin_at(points, k);
+            let way = a.distance(b);
             let mut crosses = false;
             let near = if k == 1 {
                 Some(solid.closest(b))
@@ -146,7 +145,11 @@ impl Clear<'_> {
             let smooth = sum / weight.max(1.0);
             let own = scratch.push[k];
             // A node that must move moves far enough along its own push, whatever its neighbours want.
-            let short = if own == Vec3::ZERO { Vec3::ZERO } else { own * (1.0 - smooth.dot(own) / own.length_squared()).max(0.0) };
+            let short = if own == Vec3::ZERO {
+                Vec3::ZERO
+            } else {
+                own * (1.0 - smooth.dot(own) / own.length_squared()).max(0.0)
+            };
             points[k] += smooth + short;
         }
     }
@@ -228,22 +231,35 @@ impl Clear<'_> {
     }
 }
 
+/// True when balls that are free of the surface cover the segment between two places with these clearances; looks at
+/// places between them, to the given depth.
+fn is_covered(solid: &Solid, a: (Vec3, f32), b: (Vec3, f32), depth: u32) -> bool {
+    let (way, reach) = (a.0.distance_squared(b.0), a.1 + b.1);
+    if reach * reach > way {
+        return true;
+    }
+    if depth == 0 {
+        return false;
+    }
+    let middle = (a.0 + b.0) * 0.5;
+    let clearance = solid.clearance(middle);
+    clearance > 0.0
+        && is_covered(solid, a, (middle, clearance), depth - 1)
+        && is_covered(solid, (middle, clearance), b, depth - 1)
+}
+
 /// True when a node of the strand beyond its root, or a segment beyond its first, is inside the body or crosses its
 /// surface.
 pub fn is_inside(solid: &Solid, points: &[Vec3]) -> bool {
     let mut before = 0.0;
     points.iter().enumerate().skip(1).any(|(k, &b)| {
-        let clearance = solid.clearance(b);
-        let covered = before + clearance.max(0.0);
-        before = clearance.max(0.0);
-        if clearance > 0.0 && k == 1 {
-            return false;
+        let clearance = solid.clearance(b).max(0.0);
+        let last = std::mem::replace(&mut before, clearance);
+        if clearance == 0.0 && solid.contains(b) {
+            return true;
         }
         let a = points[k - 1];
-        if clearance > 0.0 && covered > a.distance(b) {
-            return false;
-        }
-        (clearance <= 0.0 && solid.contains(b)) || (k > 1 && solid.segment_hit(a, b).is_some())
+        k > 1 && !is_covered(solid, (a, last), (b, clearance), 2) && solid.segment_hit(a, b).is_some()
     })
 }
 

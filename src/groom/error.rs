@@ -97,3 +97,11 @@ pub fn check_size(strands: u64, nodes: u64) -> Result<(), GroomError> {
 pub fn check_value(what: impl Into<String>, value: f32, lo: f32, hi: f32) -> Result<(), GroomError> {
     if value >= lo && value <= hi { Ok(()) } else { Err(GroomError::Value { what: what.into(), value }) }
 }
+
+/// Refuses points with a coordinate that is none.
+pub fn check_point(what: impl Into<String>, p: Vec3) -> Result<(), GroomError> {
+    match p.to_array().into_iter().find(|c| !c.is_finite()) {
+        Some(value) => Err(GroomError::Value { what: what.into(), value }),
+        None => Ok(()),
+    }
+}

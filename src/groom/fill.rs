@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::clear::{Clear, Outcome, Scratch};
 use super::error::{GroomError, check_size, check_value};
 use super::grow::stuck_warning;
+use super::guides::check_root;
 use super::layout;
 use super::natural::first_normal;
 use super::neighbours::{Nearest, agreement};
@@ -105,7 +106,9 @@ pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
     let n = input.roots.len();
     check_size(n as u64, n as u64 * nodes as u64)?;
 
-    let guides = Prepared::new(input.guides, nodes);
+    input.roots.iter().try_for_each(check_root)?;
+
+    let guides = Prepared::new(input.guides, nodes, options.thickness);
     task.check()?;
     let mut strands = Strands {
         points: vec![Vec3::ZERO; n * nodes],
@@ -141,8 +144,10 @@ pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
     let mut warnings = Vec::new();
     if alone > 0 {
         warnings.push(
-            Warning::new(format!("`{alone}` of {n} strands were left out: no guide grows on their side of the parting"))
-                .hint("ask for more guides, or move the parting"),
+            Warning::new(format!(
+                "`{alone}` of {n} strands were left out: no guide grows on their side of the parting"
+            ))
+            .hint("ask for more guides, or move the parting"),
         );
     }
     if stuck > 0 {
@@ -162,8 +167,10 @@ struct Prepared {
     points: Vec<Vec3>,
     /// Per guide and segment: unit directions.
     tangents: Vec<Vec3>,
-    /// Per guide and node: normals of the rotation-minimising frame, away from the head.
-    normals: Vec<Vec3>,
+    /// The same, per guide as all x, all y, all z, for the inner loop.
+    planes: Vec<f32>,
+    /// Per guide and node: where the layer of hair rises to, away from the head, with length 1 but near the root.
+    lifts: Vec<Vec3>,
     /// Per guide and node.
     stages: Vec<u8>,
     lengths: Vec<f32>,
@@ -173,20 +180,20 @@ struct Prepared {
 }
 
 impl Prepared {
-    fn new(guides: &Strands, nodes: usize) -> Self {
+    fn new(guides: &Strands, nodes: usize, thickness: f32) -> Self {
         let n = guides.count();
         let mut points = vec![Vec3::ZERO; n * nodes];
         let mut tangents = vec![Vec3::ZERO; n * (nodes - 1)];
-        let mut normals = vec![Vec3::ZERO; n * nodes];
+        let mut lifts = vec![Vec3::ZERO; n * nodes];
         let mut stages = vec![0; n * nodes];
         let lengths = points
             .par_chunks_mut(nodes)
             .zip(tangents.par_chunks_mut(nodes - 1))
-            .zip(normals.par_chunks_mut(nodes).zip(stages.par_chunks_mut(nodes)))
+            .zip(lifts.par_chunks_mut(nodes).zip(stages.par_chunks_mut(nodes)))
             .enumerate()
             .map_init(
                 || (Resampler::default(), vec![Vec3::ZERO; nodes]),
-                |(resampler, smooth), (g, ((points, tangents), (normals, stages)))| {
+                |(resampler, smooth), (g, ((points, tangents), (lifts, stages)))| {
                     let old = if guides.stage.is_empty() { &[][..] } else { &guides.stage[guides.range(g)] };
                     resampler.uniform(guides.strand(g), points, |j, at| {
                         stages[j] = old.get(at.ceil() as usize).copied().unwrap_or(0);
@@ -198,14 +205,26 @@ impl Prepared {
                     }
                     frames::tangents(points, smooth);
                     let first = first_normal(points, smooth[0], &guides.roots[g]);
-                    frames::normals(points, smooth, first, normals);
-                    curve::length(points)
+                    frames::normals(points, smooth, first, lifts);
+                    let length = curve::length(points);
+                    // The layer has its depth after four times that much.
+                    for (j, lift) in lifts.iter_mut().enumerate() {
+                        let s = length * j as f32 / (nodes - 1) as f32;
+                        *lift *= trig::smoothstep(0.0, 4.0 * thickness.max(1e-3), s);
+                    }
+                    length
                 },
             )
             .collect();
         let nearest = Nearest::new(guides.roots.iter().map(|r| r.position).collect());
+        let mut planes = Vec::with_capacity(tangents.len() * 3);
+        for strand in tangents.chunks(nodes - 1) {
+            for axis in 0..3 {
+                planes.extend(strand.iter().map(|t| t[axis]));
+            }
+        }
         let mut prepared =
-            Self { nodes, points, tangents, normals, stages, lengths, nearest, agreements: Vec::new() };
+            Self { nodes, points, tangents, planes, lifts, stages, lengths, nearest, agreements: Vec::new() };
         prepared.agreements = (0..n)
             .into_par_iter()
             .map_init(Vec::new, |found, g| {
@@ -235,6 +254,8 @@ struct Worker {
     near: Vec<(f32, u32)>,
     /// Guides that the member follows, and their weights, which sum to 1.
     weights: Vec<(usize, f32)>,
+    /// The mixed tangents: all x, all y, all z.
+    mix: Vec<f32>,
     scratch: Scratch,
 }
 
@@ -243,8 +264,9 @@ impl Worker {
     fn choose(&mut self, input: &Fill, guides: &Prepared, root: &Root) -> Option<usize> {
         let wanted = input.options.neighbours.clamp(1, MOST);
         let count = guides.lengths.len();
-        // First a few near ones; where a parting takes them all, every guide.
-        for k in [NEAR.min(count), count] {
+        // First a few near ones; where partings take them all, every guide.
+        let few = if input.separated.is_some() { NEAR } else { wanted + 1 };
+        for k in [few.min(count), count] {
             guides.nearest.find(root.position, k, &mut self.found);
             self.near.clear();
             for &(d, g) in &self.found {
@@ -289,7 +311,7 @@ impl Worker {
     }
 
     /// Integrates the mixed tangents from the member's own root.
-    fn grow(&self, input: &Fill, guides: &Prepared, guide: usize, root: &Root, out: &mut [Vec3]) {
+    fn grow(&mut self, input: &Fill, guides: &Prepared, guide: usize, root: &Root, out: &mut [Vec3]) {
         let options = input.options;
         let nodes = guides.nodes;
         let segments = nodes - 1;
@@ -300,47 +322,45 @@ impl Worker {
         let strays = key.with(2).unit() < options.flyaway;
         let noise = options.noise * if strays { 6.0 } else { 1.0 };
 
-        // The mixture.
-        let tangents = &mut out[1..];
-        let mut used = self.weights.iter();
-        if let Some(&(g, w)) = used.next() {
-            let from = &guides.tangents[g * segments..(g + 1) * segments];
-            tangents.iter_mut().zip(from).for_each(|(t, &f)| *t = f * w);
+        // The mixture, plane by plane: plain loops over floats, which the compiler turns into vector code.
+        self.mix.resize(3 * segments, 0.0);
+        for (k, &(g, w)) in self.weights.iter().enumerate() {
+            let from = &guides.planes[g * 3 * segments..(g + 1) * 3 * segments];
+            if k == 0 {
+                self.mix.iter_mut().zip(from).for_each(|(t, &f)| *t = f * w);
+            } else {
+                self.mix.iter_mut().zip(from).for_each(|(t, &f)| *t += f * w);
+            }
         }
-        for &(g, w) in used {
-            let from = &guides.tangents[g * segments..(g + 1) * segments];
-            tangents.iter_mut().zip(from).for_each(|(t, &f)| *t += f * w);
+        if noise > 0.0 {
+            self.add_noise(key, noise, segments);
         }
-        // Integration, with noise that runs straight from knot to knot.
-        let own = &guides.tangents[guide * segments..(guide + 1) * segments];
-        let knot = |k: usize| if noise > 0.0 { gaussian3(key.with(16 + k as u64)) * noise } else { Vec3::ZERO };
-        let pieces = KNOTS.min(segments);
-        let (mut p, mut at, mut a, mut b) = (root.position, 0, knot(0), knot(1));
-        for j in 0..segments {
-            let mut t = out[j + 1];
-            if noise > 0.0 {
-                let x = (j * pieces) as f32 / segments as f32;
-                if x as usize > at {
-                    at = x as usize;
-                    (a, b) = (b, knot(at + 1));
+        // To segments of equal length; where the tangents cancel, the first guide's.
+        let (x, yz) = self.mix.split_at_mut(segments);
+        let (y, z) = yz.split_at_mut(segments);
+        let mut least = f32::INFINITY;
+        for ((x, y), z) in x.iter_mut().zip(y.iter_mut()).zip(z.iter_mut()) {
+            let squared = *x * *x + *y * *y + *z * *z;
+            let to_length = h / squared.max(1e-12).sqrt();
+            least = if squared < least { squared } else { least };
+            (*x, *y, *z) = (*x * to_length, *y * to_length, *z * to_length);
+        }
+        if least < 1e-6 {
+            for j in 0..segments {
+                if x[j] * x[j] + y[j] * y[j] + z[j] * z[j] < 0.81 * h * h {
+                    let own = guides.tangents[guide * segments + j] * h;
+                    (x[j], y[j], z[j]) = (own.x, own.y, own.z);
                 }
-                t += a.lerp(b, x - at as f32);
             }
-            let squared = t.length_squared();
-            t = if squared > 1e-8 { t * (1.0 / squared.sqrt()) } else { own[j] };
-            p += t * h;
-            out[j + 1] = p;
         }
-        out[0] = root.position;
-
-        // The layer of hair: each member lies at its own height over the guides.
+        // Integration. The layer of hair: each member lies at its own height over the guides.
         let height = options.thickness * key.with(3).unit();
-        if height > 0.0 {
-            let rise = 4.0 * options.thickness;
-            let normals = &guides.normals[guide * nodes..(guide + 1) * nodes];
-            for (j, (p, n)) in out.iter_mut().zip(normals).enumerate() {
-                *p += *n * (height * trig::smoothstep(0.0, rise, h * j as f32));
-            }
+        let lifts = &guides.lifts[guide * nodes + 1..(guide + 1) * nodes];
+        let mut p = root.position;
+        out[0] = p;
+        for ((((out, &lift), x), y), z) in out[1..].iter_mut().zip(lifts).zip(x).zip(y).zip(z) {
+            p += Vec3::new(*x, *y, *z);
+            *out = p + lift * height;
         }
         if options.clump > 0.0 {
             let points = &guides.points[guide * nodes..(guide + 1) * nodes];
@@ -348,6 +368,24 @@ impl Worker {
                 let u = j as f32 / segments as f32;
                 *p = p.lerp(q, options.clump * trig::smoothstep(options.clump_start, 1.0, u));
             }
+        }
+    }
+    /// Adds noise that runs straight from knot to knot.
+    fn add_noise(&mut self, key: Key, noise: f32, segments: usize) {
+        let pieces = KNOTS.min(segments);
+        let knot = |k: usize| gaussian3(key.with(16 + k as u64)) * noise;
+        let mut a = knot(0);
+        for piece in 0..pieces {
+            let b = knot(piece + 1);
+            let (lo, hi) = (piece * segments / pieces, (piece + 1) * segments / pieces);
+            let step = (b - a) / (hi - lo) as f32;
+            for axis in 0..3 {
+                let plane = &mut self.mix[axis * segments..(axis + 1) * segments];
+                for (j, t) in plane[lo..hi].iter_mut().enumerate() {
+                    *t += a[axis] + step[axis] * j as f32;
+                }
+            }
+            a = b;
         }
     }
 }

@@ -141,7 +141,11 @@ pub fn never_entered(domain: &Domain, index: usize, whose: &str, strands: &Stran
 
 fn nearest_node(region: &OrientedBox, strands: &Strands) -> (f32, Vec3) {
     let outside = |p: &Vec3| (region.to_local(*p).abs() - region.half).max(Vec3::ZERO).length();
-    strands.points.iter().map(|p| (outside(p), *p)).fold((f32::INFINITY, Vec3::ZERO), |a, b| if b.0 < a.0 { b } else { a })
+    strands
+        .points
+        .iter()
+        .map(|p| (outside(p), *p))
+        .fold((f32::INFINITY, Vec3::ZERO), |a, b| if b.0 < a.0 { b } else { a })
 }
 
 /// One thread's memory.

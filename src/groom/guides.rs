@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::error::{GroomError, check_size, check_value};
+use super::error::{GroomError, check_point, check_size, check_value};
 use super::noise::gaussian3;
 use crate::geometry::Root;
 use crate::math::rng::Key;
@@ -71,9 +71,7 @@ impl GuideOptions {
         check_value("how flat strands lie", self.lay_amount, 0.0, 1.0)?;
         check_value("the noise", self.noise, 0.0, f32::MAX)?;
         for r in roots {
-            let largest = r.position.abs().max_element();
-            check_value(format!("the root {:#018x}", r.id), largest, 0.0, f32::MAX)?;
-            check_value(format!("the normal of root {:#018x}", r.id), r.normal.length(), 0.99, 1.01)?;
+            check_root(r)?;
         }
         let strands = roots.len() as u64;
         check_size(strands, strands.saturating_mul(self.most_steps() as u64 + 1))
@@ -112,4 +110,10 @@ impl GuideOptions {
         let t = t - root.normal * t.dot(root.normal).min(0.0);
         t.try_normalize().unwrap_or(root.normal)
     }
+}
+
+/// Refuses roots that are nowhere or stand nowhere to.
+pub fn check_root(root: &Root) -> Result<(), GroomError> {
+    check_point(format!("the root {:#018x}", root.id), root.position)?;
+    check_value(format!("the length of the normal of root {:#018x}", root.id), root.normal.length(), 0.99, 1.01)
 }

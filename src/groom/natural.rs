@@ -212,7 +212,8 @@ impl Natural {
             Shape::Table { offsets, .. } => {
                 check_value(format!("the number of offsets of {name}"), offsets.len() as f32, 1.0, 1e7)?;
                 for o in offsets.iter() {
-                    check_value(format!("an offset of {name}"), o.abs().max_element(), 0.0, 1e4)?;
+                    check_value(format!("an offset of {name}"), o.x, -1e4, 1e4)?;
+                    check_value(format!("an offset of {name}"), o.y, -1e4, 1e4)?;
                 }
             }
         }
@@ -510,9 +511,7 @@ impl Worker {
         }
         self.displace(input, &from.roots[i], out);
         match input.solid {
-            Some(solid) => {
-                Clear { body: Body { solid, margin: input.margin } }.strand(out, &mut self.scratch)
-            }
+            Some(solid) => Clear { body: Body { solid, margin: input.margin } }.strand(out, &mut self.scratch),
             None => Outcome::Clear,
         }
     }
@@ -541,8 +540,20 @@ impl Worker {
             let hand = match natural.turn {
                 Turn::Right => 1.0,
                 Turn::Left => -1.0,
-                Turn::Mirrored => if is_right { -1.0 } else { 1.0 },
-                Turn::Random => if key.with(3).unit() < 0.5 { -1.0 } else { 1.0 },
+                Turn::Mirrored => {
+                    if is_right {
+                        -1.0
+                    } else {
+                        1.0
+                    }
+                }
+                Turn::Random => {
+                    if key.with(3).unit() < 0.5 {
+                        -1.0
+                    } else {
+                        1.0
+                    }
+                }
             };
             let tilt = if is_right { -natural.tilt } else { natural.tilt };
             let (sin, cos) = (trig::sin(tilt), trig::cos(tilt));

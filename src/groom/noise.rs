@@ -24,7 +24,9 @@ pub fn smooth(key: Key, x: f32) -> Vec3 {
     let u = x - base;
     let at = |k: i64| gaussian3(key.with((base as i64 + k) as u64));
     let (a, b, c, d) = (at(-1), at(0), at(1), at(2));
-    b + (c - a) * (0.5 * u) + (a * 2.0 - b * 5.0 + c * 4.0 - d) * (0.5 * u * u) + (b * 3.0 - a - c * 3.0 + d) * (0.5 * u * u * u)
+    b + (c - a) * (0.5 * u)
+        + (a * 2.0 - b * 5.0 + c * 4.0 - d) * (0.5 * u * u)
+        + (b * 3.0 - a - c * 3.0 + d) * (0.5 * u * u * u)
 }
 
 #[cfg(test)]

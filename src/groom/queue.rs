@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::Vec3;
 
 use super::domain::Domain;
-use super::error::{GroomError, check_value};
+use super::error::{GroomError, check_point, check_value};
 use super::noise::gaussian3;
 use crate::math::rng::Key;
 use crate::params::Object;
@@ -73,7 +73,7 @@ impl Queue {
                     (d.strength, d.noise)
                 }
                 Domain::Gather(g) => {
-                    check_value(format!("the core of {}", name()), g.core.abs().max_element(), 0.0, f32::MAX)?;
+                    check_point(format!("the core of {}", name()), g.core)?;
                     check_value(format!("the core radius of {}", name()), g.core_radius, 0.0, f32::MAX)?;
                     check_value(format!("the scatter of {}", name()), g.scatter, f32::MIN, f32::MAX)?;
                     if let Some(p) = g.direction {

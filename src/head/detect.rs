@@ -130,10 +130,12 @@ pub(super) fn detect(mesh: &Mesh, bvh: &Bvh) -> Result<Landmarks, HeadError> {
     let (nose, sure) = front.nose(range.0, range.1, size);
     let (_, behind) = back.nose(range.0, range.1, size);
     let has_nose = sure > 0.008 * size;
-    if !has_nose && behind > 0.03 * size {
+    if behind > 0.025 * size && behind > 2.0 * sure {
         return Err(HeadError::Backwards);
     }
-    if !has_nose && plane.residual > 4.0 * search.across().residual + (0.01 * size) * (0.01 * size) {
+    // Seen from the side an ear may pass for a nose; but then there is one on the other side too.
+    let is_clear = sure > 0.03 * size && behind < 0.5 * sure;
+    if !is_clear && plane.residual > 4.0 * search.across().residual + (0.01 * size) * (0.01 * size) {
         return Err(HeadError::Sideways);
     }
 
@@ -152,13 +154,22 @@ pub(super) fn detect(mesh: &Mesh, bvh: &Bvh) -> Result<Landmarks, HeadError> {
     let occiput = Vec3::new(0.0, back.y(occiput), -back.depth[occiput]);
     let forehead_y = chin.y + 0.82 * height;
     let forehead = Vec3::new(0.0, forehead_y, front.at(forehead_y));
-    // The neck's deepest hollow, within the heights where hairlines end.
-    let hollow = back.best(back.rows(chin.y - 0.02 * height, chin.y + 0.16 * height), |i| -back.depth[i]);
-    let nape_y = back.y(hollow).max(low);
-    let nape = Vec3::new(0.0, nape_y, -back.at(nape_y));
-
     let ear_y = nose_y + 0.08 * height;
     let ear_z = (occiput.z + front.at(nose_y + 0.2 * height)) * 0.5 - 0.03 * height;
+    // The neck's deepest hollow within the heights where hairlines end, behind the ears; a head without a neck has it
+    // where it turns under.
+    let is_behind = |i: &usize| -back.depth[*i] < ear_z;
+    let under = |i: usize| back.depth[i] - back.y(i);
+    let usual = chin.y + 0.08 * height;
+    let hollow = |i: usize| back.depth[i] + 0.1 * (back.y(i) - usual).abs();
+    let nape = back
+        .rows(chin.y - 0.02 * height, chin.y + 0.16 * height)
+        .filter(is_behind)
+        .min_by(|&a, &b| hollow(a).total_cmp(&hollow(b)))
+        .or_else(|| (0..ROWS).filter(is_behind).max_by(|&a, &b| under(a).total_cmp(&under(b))))
+        .ok_or(HeadError::NoHead)?;
+    let nape = Vec3::new(0.0, back.y(nape), -back.depth[nape]);
+
     let ears = [1.0, -1.0].map(|sign| Ear::measure(&shape, Vec3::new(0.0, ear_y, ear_z), height, sign));
     let [left_ear, right_ear] = Ear::pair(&shape, ears, Vec3::new(0.0, ear_y, ear_z), height)?;
 

@@ -166,8 +166,9 @@ fn fit(places: impl Iterator<Item = (f32, f32, f32)>) -> Option<[f32; 6]> {
         for r in 0..6 {
             if r != i {
                 let f = m[r][i] / m[i][i];
-                for c in i..7 {
-                    m[r][c] -= f * m[i][c];
+                let row = m[i];
+                for (a, b) in m[r].iter_mut().zip(row).skip(i) {
+                    *a -= f * b;
                 }
             }
         }

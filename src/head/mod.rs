@@ -15,6 +15,8 @@ mod mask;
 mod parting;
 mod polygon;
 mod region;
+#[cfg(test)]
+mod region_tests;
 mod roots;
 mod sampled;
 mod scalp;
@@ -76,6 +78,18 @@ impl std::fmt::Debug for Head {
 }
 
 impl Head {
+    /// The built-in mannequin.
+    ///
+    /// # Errors
+    /// None in practice: the tests build every style.
+    pub fn mannequin(style: mannequin::Style) -> Result<Self, HeadError> {
+        let mut marks = Landmarks::from_all([Vec3::NAN; 9]);
+        for (name, place) in mannequin::landmarks(style) {
+            marks = marks.with(name, place);
+        }
+        Self::with_landmarks(mannequin::mesh(style), style.text(), marks)
+    }
+
     /// A head from any upright mesh in cm that looks to +Z, give or take 45 degrees. `overrides` are landmarks by
     /// name in the mesh's own space; they are laid on the surface.
     ///
@@ -265,7 +279,7 @@ impl HeadError {
 }
 
 impl Head {
-    pub(self) fn patch(&self) -> &Patch {
+    fn patch(&self) -> &Patch {
         &self.patch
     }
 

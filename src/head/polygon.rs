@@ -23,20 +23,32 @@ pub(super) struct Polygon {
 }
 
 impl Polygon {
-    /// From at least three control points, seen from `centre`; `smooth` rounds the corners.
-    pub fn new(centre: Vec3, controls: &[Vec3], smooth: bool) -> Option<Self> {
-        let arms: Vec<Vec3> = controls.iter().map(|&p| p - centre).filter(|a| a.length() > 1e-4).collect();
-        if arms.len() < 3 {
-            return None;
-        }
-        let mean = arms.iter().map(|a| a.normalize()).sum::<Vec3>() / arms.len() as f32;
-        // A curve all around the head encloses its top.
-        let pole = if mean.length() > 0.15 { mean.normalize() } else { Vec3::Y };
+    /// From at least three control points, seen from `centre`; `smooth` rounds the corners. A curve about half of the
+    /// head encloses the half around `crown`, a smaller one what it is wrapped around.
+    pub fn new(centre: Vec3, crown: Vec3, controls: &[Vec3], smooth: bool) -> Option<Self> {
+        let points = curve(&arms(centre, controls)?, smooth);
+        // The mean direction of the curve, by its length on the unit sphere: it does not depend on how the control
+        // points crowd.
+        let directions = || points.iter().map(|p| p.normalize_or_zero());
+        let next = directions().cycle().skip(1);
+        let (sum, length) = directions().zip(next).fold((Vec3::ZERO, 0.0), |(sum, length), (a, b)| {
+            let step = a.distance(b);
+            (sum + (a + b) * (0.5 * step), length + step)
+        });
+        let mean = sum / length.max(1e-9);
+        let pole = if mean.length() > 0.4 { mean.normalize() } else { crown };
+        Self::around(centre, pole, controls, smooth)
+    }
+
+    /// The same, enclosing the direction `pole` from the centre.
+    pub fn around(centre: Vec3, pole: Vec3, controls: &[Vec3], smooth: bool) -> Option<Self> {
+        let arms = arms(centre, controls)?;
+        let points = curve(&arms, smooth);
         let across = pole.any_orthonormal_vector();
         let frame = Mat3::from_cols(across, pole.cross(across), pole).transpose();
         let radii = || arms.iter().map(|a| a.length());
         let shell = (0.55 * radii().fold(f32::INFINITY, f32::min), 1.3 * radii().fold(0.0, f32::max));
-        let outline: Vec<Vec2> = curve(&arms, smooth).iter().map(|a| flatten(&frame, *a)).collect();
+        let outline: Vec<Vec2> = points.iter().map(|a| flatten(&frame, *a)).collect();
         let low = outline.iter().copied().fold(Vec2::INFINITY, Vec2::min);
         let high = outline.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max);
         Some(Self { centre, frame, outline, low, high, shell })
@@ -70,8 +82,14 @@ impl Polygon {
     }
 }
 
+/// The control points from the centre; those in the centre itself are left out.
+fn arms(centre: Vec3, controls: &[Vec3]) -> Option<Vec<Vec3>> {
+    let arms: Vec<Vec3> = controls.iter().map(|&p| p - centre).filter(|a| a.length() > 1e-4).collect();
+    (arms.len() >= 3).then_some(arms)
+}
+
 /// The control points with their edges filled in, closed.
-pub(super) fn curve(arms: &[Vec3], smooth: bool) -> Vec<Vec3> {
+fn curve(arms: &[Vec3], smooth: bool) -> Vec<Vec3> {
     let n = arms.len();
     let mut points = Vec::with_capacity(n * STEPS);
     for i in 0..n {
@@ -118,7 +136,7 @@ mod tests {
         let mut back = ring.clone();
         back.reverse();
         for ring in [ring, back] {
-            let cap = Polygon::new(Vec3::ZERO, &ring, true).unwrap();
+            let cap = Polygon::new(Vec3::ZERO, Vec3::Y, &ring, true).unwrap();
             for i in 0..500 {
                 let d = Key::new(3, "cap").with(i).direction();
                 let slope = d.y / Vec3::new(d.x, 0.0, d.z).length();
@@ -137,7 +155,7 @@ mod tests {
             Vec3::new(2.0, 10.0, 2.0),
             Vec3::new(-2.0, 10.0, 2.0),
         ];
-        let polygon = Polygon::new(Vec3::ZERO, &square, false).unwrap();
+        let polygon = Polygon::new(Vec3::ZERO, Vec3::Z, &square, false).unwrap();
         assert!(polygon.contains(Vec3::Y * 10.0));
         assert!(!polygon.contains(Vec3::Y * 3.0));
         assert!(!polygon.contains(Vec3::Y * 30.0));
@@ -147,7 +165,7 @@ mod tests {
 
     #[test]
     fn too_few_points_are_no_polygon() {
-        assert!(Polygon::new(Vec3::ZERO, &[Vec3::X, Vec3::Y], false).is_none());
-        assert!(Polygon::new(Vec3::X, &[Vec3::X, Vec3::X, Vec3::Y], false).is_none());
+        assert!(Polygon::new(Vec3::ZERO, Vec3::Y, &[Vec3::X, Vec3::Y], false).is_none());
+        assert!(Polygon::new(Vec3::X, Vec3::Y, &[Vec3::X, Vec3::X, Vec3::Y], false).is_none());
     }
 }

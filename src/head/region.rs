@@ -138,13 +138,14 @@ impl Region {
 
     /// The natural hairline of a head: see `docs` of [`Head::scalp`].
     pub(super) fn natural(head: &Head) -> Self {
-        let outline = Polygon::new(head.centre(), &scalp::outline(head), true);
+        let outline = Polygon::around(head.centre(), head.crown(), &scalp::outline(head), true);
         let scalp = outline.map_or_else(Self::everything, |p| Self::new(Shape::Polygon(p)));
         scalp.minus(&Self::new(Shape::Ears(*head.ears(), 0.5 * head.scale)))
     }
 
     /// What a closed curve through `points` (head space, in order, either way round) encloses; `smooth` rounds its
-    /// corners. Edges run along great circles about [`Head::centre`]. A curve all around the head encloses the top.
+    /// corners. Edges run along great circles about [`Head::centre`]. A curve
+    /// about half of the head encloses the half with the crown.
     ///
     /// # Errors
     /// Too few points, or a bad one.
@@ -154,7 +155,7 @@ impl Region {
         }
         // Points are laid on the surface: given a little off it, they mean the same directions and the right shell.
         let laid: Vec<Vec3> = points.iter().map(|&p| head.closest(p).position).collect();
-        let polygon = Polygon::new(head.centre(), &laid, smooth);
+        let polygon = Polygon::new(head.centre(), head.crown(), &laid, smooth);
         polygon.map(|p| Self::new(Shape::Polygon(p))).ok_or(RegionError::TooFewPoints { count: points.len() })
     }
 

@@ -44,10 +44,10 @@ pub(super) fn centre(marks: &Landmarks) -> Vec3 {
     Vec3::new(0.0, y + (marks.vertex.y - y) * 0.35, (marks.forehead.z + marks.occiput.z) * 0.5)
 }
 
-/// Triangles of the head and the neck: not lower than 0.3 heads under the chin, not farther than 1.4 heads away.
+/// Triangles of the head and the neck: not lower than 0.2 heads under the chin and the nape, not farther than 1.4 heads away.
 pub(super) fn growing(mesh: &Mesh, marks: &Landmarks) -> Vec<u32> {
     let (height, centre) = (marks.height(), centre(marks));
-    let low = marks.chin.y.min(marks.nape.y) - 0.3 * height;
+    let low = marks.chin.y.min(marks.nape.y) - 0.2 * height;
     (0..mesh.triangles.len() as u32)
         .filter(|&t| {
             let [a, b, c] = mesh.corners(t as usize);
@@ -88,6 +88,13 @@ impl Head {
             _ => return Err(HeadError::UnknownBox { name: name.to_owned(), nearest: nearest(name, BOXES) }),
         }
         Ok(OrientedBox::between(lo * self.scale, hi * self.scale))
+    }
+
+    /// Unit direction from [`Head::centre`] to the crown, halfway between vertex and occiput.
+    pub fn crown(&self) -> Vec3 {
+        let [up, back] =
+            [self.landmarks.vertex, self.landmarks.occiput].map(|p| (p - self.centre()).normalize_or_zero());
+        (up + back).normalize_or(Vec3::Y)
     }
 
     /// A place over the skin in a direction from [`Head::centre`]: `azimuth` radians from the face towards the head's

@@ -39,6 +39,13 @@ impl Camera {
         )
     }
 
+    /// The point that projects to these pixels and this depth.
+    pub fn unproject(&self, at: Vec3) -> Vec3 {
+        let x = (at.x - self.width as f32 * 0.5) / self.scale;
+        let y = (self.height as f32 * 0.5 - at.y) / self.scale;
+        self.centre + self.to_world(Vec3::new(x, y, at.z))
+    }
+
     /// The vector in head space with these components to the right, up and toward the viewer.
     pub fn to_world(&self, v: Vec3) -> Vec3 {
         self.right * v.x + self.up * v.y + self.toward * v.z
@@ -98,8 +105,8 @@ pub fn frame(scene: &Scene, views: &[View]) -> Framing {
                 }
             }
             Body::Hair(hair) => {
-                points.extend(hair.strands.points.iter().filter(|p| p.is_finite()));
-                points.extend(hair.guides.points.iter().filter(|p| p.is_finite() && scene.look.debug));
+                let shown = if scene.look.debug { &hair.guides } else { &hair.strands };
+                points.extend(shown.points.iter().filter(|p| p.is_finite()));
                 if scene.look.debug {
                     points.extend(hair.overlay.lines.iter().flat_map(|l| &l.points).filter(|p| p.is_finite()));
                 }
@@ -157,6 +164,8 @@ mod tests {
         };
         assert_eq!(camera.project(Vec3::new(1.0, 2.0, 3.0)), Vec3::new(100.0, 50.0, 0.0));
         assert_eq!(camera.project(Vec3::new(2.0, 3.0, 5.0)), Vec3::new(110.0, 40.0, 2.0));
+        let p = Vec3::new(0.5, -3.0, 7.0);
+        assert!(camera.unproject(camera.project(p)).distance(p) < 1e-5);
         assert_eq!(camera.enlarged(2).project(Vec3::new(2.0, 3.0, 5.0)), Vec3::new(220.0, 80.0, 2.0));
     }
 }

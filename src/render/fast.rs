@@ -12,11 +12,18 @@ pub fn exp(x: f32) -> f32 {
         return 0.0;
     }
     let y = x.min(88.0) * std::f32::consts::LOG2_E;
-    let whole = y.floor();
-    let f = (y - whole) * std::f32::consts::LN_2;
+    // `floor` would be a call where the processor at hand is not known to have the instruction.
+    let whole = (y + 128.0) as i32 - 128;
+    let f = (y - whole as f32) * std::f32::consts::LN_2;
     // Taylor's series about 0, over 0..ln 2.
     let p = 1.0 + f * (1.0 + f * (1.0 / 2.0 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f / 720.0)))));
-    p * f32::from_bits(((whole as i32 + 127) << 23) as u32)
+    p * f32::from_bits(((whole + 127) << 23) as u32)
+}
+
+/// The least whole number not under `x`, which is at least 0; 0 for NaN and below.
+pub fn ceil(x: f32) -> usize {
+    let whole = x as usize;
+    whole + usize::from((whole as f32) < x)
 }
 
 /// sRGB bytes of 4096 linear values 0..=1, denser towards black: index is the square root.
@@ -46,6 +53,13 @@ mod tests {
             assert!((got - want).abs() <= 4e-5 * want, "{x}: {got} {want}");
         }
         assert_eq!(exp(-1e9), 0.0);
+    }
+
+    #[test]
+    fn rounding_up() {
+        for (x, want) in [(0.0, 0), (0.25, 1), (1.0, 1), (1.001, 2), (-3.5, 0), (f32::NAN, 0)] {
+            assert_eq!(ceil(x), want, "{x}");
+        }
     }
 
     #[test]

@@ -12,11 +12,11 @@ use crate::task::{Cancelled, Task};
 use super::camera::Camera;
 use super::fast;
 use super::shade::Studio;
-use super::strands::{Bundle, Chunk, Ink, Tiles, Vertex, gather};
+use super::strands::{Bundle, Chunk, Ink, Tiles, gather};
 use super::surface::Layer;
 
-/// A pixel through which less than this passes is finished: half of what 8 bits can show.
-const CLOSED: f32 = 1.0 / 512.0;
+/// A pixel through which less than this passes is finished: what is there is scaled up to fill it.
+const CLOSED: f32 = 1.0 / 64.0;
 /// Strands this far (cm) under a surface still count as on it: roots lie in the skin.
 const ON_SURFACE: f32 = 0.05;
 
@@ -49,6 +49,7 @@ pub fn draw(bundles: &[Bundle], canvas: &Canvas, task: &Task) -> Result<Vec<u8>,
     let edge = (32 / ss).max(1);
     let tiles = Tiles::new(camera.width, camera.height, edge * ss);
     let chunks = gather(bundles, camera, tiles, task)?;
+    task.progress("hair: tiles", 0.6);
     let far = depth_range(&chunks);
     let drawn: Result<Vec<Vec<[u8; 3]>>, Cancelled> = (0..tiles.count())
         .into_par_iter()
@@ -94,6 +95,16 @@ struct Pixel {
     surface: f32,
 }
 
+/// A segment as a tile draws it.
+struct Piece<'a> {
+    ends: [Vec3; 2],
+    /// Pixels, at either end.
+    width: [f32; 2],
+    bundle: &'a Bundle<'a>,
+    chunk: &'a Chunk,
+    segment: usize,
+}
+
 /// One tile while it is drawn.
 struct Tile {
     edge: usize,
@@ -121,20 +132,21 @@ impl Tile {
 
     /// Lays all segments of the tile over each other, nearest first.
     fn lines(&mut self, bundles: &[Bundle], chunks: &[Chunk], canvas: &Canvas, tile: usize, far: (f32, f32)) {
-        let mut order: Vec<u64> = Vec::new();
-        for (c, chunk) in chunks.iter().enumerate() {
+        // Copied once in the order of memory: by depth they lie scattered over all strands.
+        let (mut order, mut pieces) = (Vec::<u64>::new(), Vec::new());
+        for chunk in chunks {
+            let bundle = &bundles[chunk.bundle as usize];
             for &s in chunk.segments(tile) {
                 let (a, b) = (&chunk.vertices[s as usize], &chunk.vertices[s as usize + 1]);
                 let behind = ((far.0 - 0.5 * (a.at.z + b.at.z)) * far.1).clamp(0.0, DEPTHS) as u64;
-                order.push(behind << 44 | (c as u64) << 24 | u64::from(s));
+                order.push(behind << 32 | pieces.len() as u64);
+                let width = [a, b].map(|v| bundle.width[0] + (bundle.width[1] - bundle.width[0]) * v.along);
+                pieces.push(Piece { ends: [a.at, b.at], width, bundle, chunk, segment: s as usize });
             }
         }
         order.sort_unstable();
         for key in order {
-            let chunk = &chunks[(key >> 24 & 0xf_ffff) as usize];
-            let s = (key & 0xff_ffff) as usize;
-            let bundle = &bundles[chunk.bundle as usize];
-            self.segment(bundle, &chunk.vertices[s], &chunk.vertices[s + 1], canvas);
+            self.segment(&pieces[(key & 0xffff_ffff) as usize], canvas);
             if self.closed == self.width * self.height {
                 break;
             }
@@ -143,16 +155,16 @@ impl Tile {
 
     /// Draws one segment: per step along its longer axis, the part of each pixel that its width covers across. Summed
     /// over the pixels of a step that is exactly the width, wherever between them the line runs.
-    fn segment(&mut self, bundle: &Bundle, va: &Vertex, vb: &Vertex, canvas: &Canvas) {
+    fn segment(&mut self, piece: &Piece, canvas: &Canvas) {
+        let &Piece { ends: [va, vb], width: [mut wa, mut wb], bundle, chunk, segment } = piece;
         let origin = Vec2::new(self.x0 as f32 + 0.5, self.y0 as f32 + 0.5);
-        let steep = (vb.at.y - va.at.y).abs() > (vb.at.x - va.at.x).abs();
+        let steep = (vb.y - va.y).abs() > (vb.x - va.x).abs();
         // Along the longer axis there is one row of pixels per step; `u` runs along it.
         let turn = |v: Vec3| {
             let p = v.truncate() - origin;
             if steep { Vec3::new(p.y, p.x, v.z) } else { Vec3::new(p.x, p.y, v.z) }
         };
-        let (mut a, mut b) = (turn(va.at), turn(vb.at));
-        let (mut wa, mut wb) = (width(bundle, va), width(bundle, vb));
+        let (mut a, mut b) = (turn(va), turn(vb));
         let swapped = a.x > b.x;
         if swapped {
             (a, b, wa, wb) = (b, a, wb, wa);
@@ -167,9 +179,9 @@ impl Tile {
         let slope = Vec3::new(1.0, d.y / d.x, d.z / d.x);
         let cosine = d.x / length;
         let (nu, nv) = if steep { (self.height, self.width) } else { (self.width, self.height) };
-        let first = (a.x - more).ceil().max(0.0) as usize;
-        let end = (b.x + more).ceil().clamp(0.0, nu as f32) as usize;
+        let (first, end) = (fast::ceil(a.x - more), fast::ceil(b.x + more).min(nu));
         let mut colours: Option<(Vec3, Vec3)> = None;
+        let shaded = matches!(bundle.ink, Ink::Hair(..));
         for u in first..end {
             let step = u as f32 - a.x;
             let t = (step / d.x).clamp(0.0, 1.0);
@@ -177,12 +189,7 @@ impl Tile {
             let middle = a.y + slope.y * step;
             let z = a.z + slope.z * step;
             let reach = 0.5 * (w + 1.0);
-            let v0 = (middle - reach).ceil().max(0.0) as usize;
-            let v1 = (middle + reach).floor().min(nv as f32 - 1.0);
-            if v1 < 0.0 {
-                continue;
-            }
-            for v in v0..=v1 as usize {
+            for v in fast::ceil(middle - reach)..fast::ceil(middle + reach).min(nv) {
                 let i = if steep { u * self.edge + v } else { v * self.edge + u };
                 if self.pixels[i].open < CLOSED {
                     continue;
@@ -195,11 +202,13 @@ impl Tile {
                 }
                 let cover = (reach - (v as f32 - middle).abs()).clamp(0.0, w.min(1.0));
                 let (ca, cb) = *colours.get_or_insert_with(|| {
-                    let (ca, cb) = (colour(bundle, va, canvas.studio), colour(bundle, vb, canvas.studio));
+                    let [ca, cb] = [segment, segment + 1].map(|v| chunk.colour(v, || colour(bundle, chunk, v, canvas)));
                     if swapped { (cb, ca) } else { (ca, cb) }
                 });
                 let pixel = &mut self.pixels[i];
-                pixel.light += (ca + (cb - ca) * t) * (pixel.open * cover);
+                // What is seen through gaps between other strands lies in their shadow, finer than any grid shows.
+                let lit = if shaded { 0.45 + 0.80 * pixel.open } else { 1.0 };
+                pixel.light += (ca + (cb - ca) * t) * (pixel.open * cover * lit);
                 pixel.open *= 1.0 - cover;
                 self.closed += usize::from(pixel.open < CLOSED);
             }
@@ -210,7 +219,7 @@ impl Tile {
     fn lay_surface(&mut self, i: usize, canvas: &Canvas) {
         let at = (self.y0 + i / self.edge) * canvas.layer.width + self.x0 + i % self.edge;
         let pixel = &mut self.pixels[i];
-        if pixel.surface == f32::NEG_INFINITY {
+        if pixel.surface == f32::NEG_INFINITY || pixel.open < CLOSED {
             return;
         }
         let cover = canvas.layer.cover[at] * canvas.solid;
@@ -237,7 +246,8 @@ impl Tile {
                 let mut sum = Vec3::ZERO;
                 for k in 0..ss * ss {
                     let p = self.pixels[(y * ss + k / ss) * self.edge + x * ss + k % ss];
-                    sum += p.light + canvas.background * p.open;
+                    sum +=
+                        if p.open < CLOSED { p.light / (1.0 - p.open) } else { p.light + canvas.background * p.open };
                 }
                 let mean = sum / (ss * ss) as f32;
                 out.push(fast::encode(canvas.background + (mean - canvas.background) * keep));
@@ -247,29 +257,16 @@ impl Tile {
     }
 }
 
-/// Where along its line a vertex is, 0 first node to 1 last.
-fn along(bundle: &Bundle, v: &Vertex) -> f32 {
-    let (first, end) = (bundle.offsets[v.line as usize], bundle.offsets[v.line as usize + 1]);
-    ((v.node - first) as f32 + v.part) / ((end - first) as f32 - 1.0).max(1.0)
-}
-
-fn width(bundle: &Bundle, v: &Vertex) -> f32 {
-    bundle.width[0] + (bundle.width[1] - bundle.width[0]) * along(bundle, v)
-}
-
-fn colour(bundle: &Bundle, v: &Vertex, studio: &Studio) -> Vec3 {
-    let (first, end) = (bundle.offsets[v.line as usize] as usize, bundle.offsets[v.line as usize + 1] as usize);
-    let node = v.node as usize;
-    let next = (node + 1).min(end - 1);
+fn colour(bundle: &Bundle, chunk: &Chunk, vertex: usize, canvas: &Canvas) -> Vec3 {
+    let v = &chunk.vertices[vertex];
     match bundle.ink {
-        Ink::Flat(colours) => colours[node] + (colours[next] - colours[node]) * v.part,
+        Ink::Flat(colours) => colours[v.node as usize],
         Ink::Hair(coat, roots) => {
-            let points = bundle.points;
-            let p = points[node] + (points[next] - points[node]) * v.part;
-            let before = if v.part > 0.0 { node } else { node.saturating_sub(1).max(first) };
-            let tangent = (points[next] - points[before]).normalize_or_zero();
+            let d = chunk.direction(vertex);
+            let d = Vec3::new(d.x, -d.y, d.z * canvas.camera.scale);
+            let tangent = canvas.camera.to_world(d).normalize_or_zero();
             let strand = coat.strand(roots.get(v.line as usize).map_or(0, |r| r.id));
-            studio.hair(&coat, &strand, p, tangent, along(bundle, v))
+            canvas.studio.hair(&coat, &strand, canvas.camera.unproject(v.at), tangent, v.along)
         }
     }
 }

@@ -7,12 +7,15 @@
 
 use glam::Vec3;
 
-use crate::math::Colour;
+use rayon::prelude::*;
+
+use crate::geometry::Mesh;
 use crate::scene::{HairMaterial, MeshMaterial};
+use crate::task::{Cancelled, Task};
 
 use super::camera::Camera;
 use super::fast;
-use super::shadow::{Grid, transmittance};
+use super::shadow::{Density, Depths, Grid, Lights, openness, transmittance};
 
 /// A lamp far away.
 #[derive(Clone, Debug)]
@@ -21,15 +24,20 @@ struct Lamp {
     toward: Vec3,
     /// Linear colour times strength.
     colour: Vec3,
-    /// The fraction of its light that arrives; none for the fill, which is shaded by openness.
-    reach: Option<Grid>,
+    /// Which of the values of [`Lights`] shades it in hair.
+    reach: usize,
+    /// The fraction that hair lets through to the skin; none for the fill, which is shaded by openness.
+    skin: Option<Grid>,
+    /// Where the head stands in its own light.
+    head: Option<Depths>,
 }
 
 /// The lamps of one view.
 #[derive(Clone, Debug)]
 pub struct Studio<'a> {
     lamps: Vec<Lamp>,
-    open: &'a Grid,
+    lights: Lights,
+    sky: &'a Sky,
     toward: Vec3,
     up: Vec3,
 }
@@ -43,23 +51,47 @@ const LAMPS: [([f32; 3], [f32; 3]); 4] = [
 ];
 /// Light of the sky.
 const SKY: Vec3 = Vec3::new(0.46, 0.48, 0.52);
-/// Which lamp casts no shadow of its own.
+/// The lamp whose shadows are the sharpest.
+const KEY: usize = 0;
+/// The lamp that casts no shadow of its own.
 const FILL: usize = 1;
 
+/// How much of the sky reaches each place; the same for all views.
+#[derive(Clone, Debug)]
+pub struct Sky {
+    /// In hair, beside strands and skin.
+    hair: Grid,
+    /// On the skin, under strands alone.
+    skin: Grid,
+}
+
+impl Sky {
+    /// From what stands in its way.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn new(density: &Density, task: &Task) -> Result<Self, Cancelled> {
+        Ok(Self { hair: openness(&density.coarse, task)?, skin: openness(&density.coarse_hair, task)? })
+    }
+}
+
 impl<'a> Studio<'a> {
-    /// Lamps about `camera`; `density` stands in their way, `open` shades the sky.
-    pub fn new(camera: &Camera, density: &Grid, open: &'a Grid) -> Self {
-        use rayon::prelude::*;
-        let lamps = LAMPS
-            .par_iter()
-            .enumerate()
-            .map(|(i, &(d, c))| {
-                let toward = camera.to_world(Vec3::from(d).normalize());
-                let reach = (i != FILL).then(|| transmittance(density, toward));
-                Lamp { toward, colour: Vec3::from(c), reach }
+    /// Lamps about `camera`; `density` and `meshes` stand in their way.
+    pub fn new(camera: &Camera, density: &Density, meshes: &[&Mesh], sky: &'a Sky) -> Self {
+        let toward = |i: usize| camera.to_world(Vec3::from(LAMPS[i].0).normalize());
+        let lights = Lights::new(&density.whole, &sky.hair, [toward(0), toward(2), toward(3)]);
+        let lamps = (0..LAMPS.len())
+            .into_par_iter()
+            .map(|i| {
+                let toward = toward(i);
+                let hair = if i == KEY { &density.hair } else { &density.coarse_hair };
+                let skin = (i != FILL).then(|| transmittance(hair, toward));
+                let head = (i == KEY).then(|| Depths::new(meshes, toward));
+                // The fill shares the sky's value.
+                Lamp { toward, colour: Vec3::from(LAMPS[i].1), reach: [1, 0, 2, 3][i], skin, head }
             })
             .collect();
-        Self { lamps, open, toward: camera.toward, up: camera.up }
+        Self { lamps, lights, sky, toward: camera.toward, up: camera.up }
     }
 
     /// Linear colour of hair at `p` with the unit tangent `t` (root to tip), as the viewer sees it.
@@ -68,9 +100,10 @@ impl<'a> Studio<'a> {
         let v = self.toward;
         let tv = t.dot(v);
         let across = (v - t * tv).normalize_or_zero();
-        let open = self.open.sample(p);
+        let reaches = self.lights.sample(p).to_array();
+        let open = reaches[0];
         // Light that went through hair took on its colour; blond scatters more of it on than black.
-        let pass = Vec3::ONE - (albedo.map(f32::sqrt) * 0.9).min(Vec3::splat(0.85));
+        let pass = Vec3::ONE - (albedo.map(f32::sqrt) * 0.75).min(Vec3::splat(0.62));
         let deep = |reach: f32| {
             // reach^pass, between reach^1 and reach^(1/4).
             let quarter = reach.max(0.0).sqrt().sqrt();
@@ -81,14 +114,11 @@ impl<'a> Studio<'a> {
         for lamp in &self.lamps {
             let l = lamp.toward;
             let tl = t.dot(l);
-            let reach = match &lamp.reach {
-                Some(grid) => grid.sample(p + l * (0.7 * grid.cell())),
-                None => open,
-            };
+            let reach = reaches[lamp.reach];
             let light = lamp.colour;
             let sin_tl = (1.0 - tl * tl).max(0.0).sqrt();
             let facing = 0.5 + 0.5 * across.dot(l);
-            sum += albedo * deep(reach) * light * (sin_tl * (0.30 + 0.70 * facing));
+            sum += albedo * deep(reach) * light * (sin_tl * (0.15 + 0.70 * facing));
             if coat.shine <= 0.0 || reach < 0.004 {
                 continue;
             }
@@ -99,8 +129,8 @@ impl<'a> Studio<'a> {
                 let x = (tl + tv - shift - strand.shift) / width;
                 fast::exp(-0.5 * x * x)
             };
-            let primary = lobe(0.10, coat.width) * half * 0.30;
-            let secondary = lobe(-0.16, 1.9 * coat.width) * half * half * 0.55;
+            let primary = lobe(0.09, coat.width) * half * 0.22;
+            let secondary = lobe(-0.14, 1.7 * coat.width) * half * half * 0.30;
             let through = lobe(0.0, 2.4 * coat.width) * fast::exp(-3.65 * cos_phi - 3.98) * 0.9;
             let shine = Vec3::splat(primary * strand.glint) + glow * secondary * strand.glint + glow * albedo * through;
             sum += shine * light * (coat.shine * reach);
@@ -110,17 +140,19 @@ impl<'a> Studio<'a> {
 
     /// Linear colour of a surface at `p` with the unit normal `n` turned to the viewer.
     pub fn surface(&self, material: &Skin, p: Vec3, n: Vec3) -> Vec3 {
-        let cell = self.open.cell();
-        let open = self.open.sample(p + n * (1.7 * cell));
+        let open = self.sky.skin.sample(p + n * (0.8 * self.sky.skin.cell()));
+        let open = 0.25 * open.max(0.0).sqrt() + 0.75 * open;
         let mut sum = material.albedo * SKY * (open * (0.72 + 0.28 * n.dot(self.up)));
         // Light that bounced inside the skin comes out redder and past the edge of the shadow.
         let wrap = Vec3::new(0.34, 0.20, 0.14);
         for lamp in &self.lamps {
             let nl = n.dot(lamp.toward);
-            let reach = match &lamp.reach {
-                Some(grid) => grid.sample(p + n * (1.5 * grid.cell()) + lamp.toward * (0.8 * grid.cell())),
+            let hair = match &lamp.skin {
+                Some(grid) => grid.sample(p + (n + lamp.toward) * (0.5 * grid.cell())),
                 None => open,
             };
+            let lit = nl > -0.34 && hair > 0.004;
+            let reach = if !lit { 0.0 } else { hair * lamp.head.as_ref().map_or(1.0, |head| head.sample(p + n * 0.1)) };
             let soft = ((Vec3::splat(nl) + wrap) / (Vec3::ONE + wrap)).max(Vec3::ZERO);
             let reach_rgb = Vec3::new(reach.max(0.0).sqrt() * 0.35 + reach * 0.65, reach, reach);
             sum += material.albedo * lamp.colour * soft * soft.map(f32::sqrt) * reach_rgb * 0.80;
@@ -157,7 +189,7 @@ impl Coat {
             tip: material.tip_colour.to_linear(),
             variation: material.variation,
             shine: material.shine * 2.0,
-            width: 0.07 + 0.33 * material.roughness,
+            width: 0.04 + 0.22 * material.roughness,
         }
     }
 
@@ -203,9 +235,4 @@ impl Skin {
             gloss: 0.25 + 2.0 * smooth * smooth,
         }
     }
-}
-
-/// The linear colour of an sRGB colour, for flat drawing.
-pub fn flat(colour: Colour) -> Vec3 {
-    colour.to_linear()
 }

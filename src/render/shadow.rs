@@ -4,7 +4,7 @@
 //! what the layer before it lets through (the slicing of Kniss et al. 2003, "A model for volume lighting"). One sweep
 //! costs one pass over the grid whatever the number of strands, and its shadows are soft as those of a wide lamp.
 
-use glam::Vec3;
+use glam::{Mat3, Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::geometry::{Bounds, Mesh, Strands};
@@ -56,15 +56,19 @@ impl Grid {
         inside.then(|| (q.x as usize * n[1] + q.y as usize) * n[2] + q.z as usize)
     }
 
-    /// The value at `p` between the cells around it; outside the grid that of its border.
-    pub fn sample(&self, p: Vec3) -> f32 {
+    /// The cell at or before `p`, the fractions on to the next, and the steps along x and y.
+    fn place(&self, p: Vec3) -> (usize, Vec3, [usize; 2]) {
         let n = self.size;
         let top = Vec3::new(n[0] as f32 - 1.001, n[1] as f32 - 1.001, n[2] as f32 - 1.001);
         let q = ((p - self.origin) / self.cell).max(Vec3::ZERO).min(top);
         let (x, y, z) = (q.x as usize, q.y as usize, q.z as usize);
         let f = q - Vec3::new(x as f32, y as f32, z as f32);
-        let (sx, sy) = (n[1] * n[2], n[2]);
-        let i = x * sx + y * sy + z;
+        (x * n[1] * n[2] + y * n[2] + z, f, [n[1] * n[2], n[2]])
+    }
+
+    /// The value at `p` between the cells around it; outside the grid that of its border.
+    pub fn sample(&self, p: Vec3) -> f32 {
+        let (i, f, [sx, sy]) = self.place(p);
         let v = &self.values;
         let row = |i: usize| v[i] + (v[i + 1] - v[i]) * f.z;
         let plane = |i: usize| {
@@ -75,11 +79,16 @@ impl Grid {
         a + (b - a) * f.x
     }
 
-    /// The direction in which the values fall fastest, as long as they fall per cell.
-    pub fn descent(&self, p: Vec3) -> Vec3 {
-        let d = self.cell;
-        let slope = |axis: Vec3| self.sample(p - axis * d) - self.sample(p + axis * d);
-        Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)) * 0.5
+    /// Cells of this grid with the value of another at their middles.
+    fn resampled(&self, other: &Self) -> Vec<f32> {
+        let n = self.size;
+        (0..self.values.len())
+            .into_par_iter()
+            .map(|i| {
+                let at = Vec3::new((i / (n[1] * n[2])) as f32, (i / n[2] % n[1]) as f32, (i % n[2]) as f32);
+                other.sample(self.origin + at * self.cell)
+            })
+            .collect()
     }
 
     /// A grid of half as many cells along each side, each the mean of eight.
@@ -124,13 +133,28 @@ impl Grid {
     }
 }
 
-/// What stands in the way of light: optical depth per cm of path, from strands (their cross-section) and skin.
+/// What stands in the way of light: optical depth per cm of path.
+///
+/// Skin is shaded by hair alone, and by a finer map of the head ([`Depths`]): the cells are too coarse for a nose.
+#[derive(Clone, Debug)]
+pub struct Density {
+    /// Strands: their cross-section.
+    pub hair: Grid,
+    /// Strands and skin.
+    pub whole: Grid,
+    /// `hair` at half the resolution.
+    pub coarse_hair: Grid,
+    /// `whole` at half the resolution.
+    pub coarse: Grid,
+}
+
+/// Finds the density of the given strands and surfaces.
 ///
 /// `hair` is strands with their width at root and tip in cm.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn density(hair: &[(&Strands, f32, f32)], meshes: &[&Mesh], task: &Task) -> Result<Grid, Cancelled> {
+pub fn density(hair: &[(&Strands, f32, f32)], meshes: &[&Mesh], task: &Task) -> Result<Density, Cancelled> {
     let finite = |p: &&Vec3| p.is_finite();
     let mut bounds = Bounds::EMPTY;
     for (strands, ..) in hair {
@@ -162,6 +186,7 @@ pub fn density(hair: &[(&Strands, f32, f32)], meshes: &[&Mesh], task: &Task) -> 
         }
     }
     (0..3).for_each(|axis| grid.blur(axis));
+    let mut whole = grid.clone();
     let skin = SKIN / grid.cell;
     for mesh in meshes {
         task.check()?;
@@ -176,13 +201,13 @@ pub fn density(hair: &[(&Strands, f32, f32)], meshes: &[&Mesh], task: &Task) -> 
                 for j in 0..=steps - i {
                     let (u, v) = (i as f32 / steps as f32, j as f32 / steps as f32);
                     if let Some(k) = grid.index(a + (b - a) * u + (c - a) * v) {
-                        grid.values[k] = skin;
+                        whole.values[k] = skin;
                     }
                 }
             }
         }
     }
-    Ok(grid)
+    Ok(Density { coarse: whole.halved(), coarse_hair: grid.halved(), hair: grid, whole })
 }
 
 /// Adds one group's strands: per segment width x length over the cell's volume, times pi/4 for the mean shadow of a
@@ -269,18 +294,49 @@ impl Grid {
     }
 }
 
+/// Four values per cell: the sky and three lamps, found together by one look-up.
+#[derive(Clone, Debug)]
+pub struct Lights {
+    frame: Grid,
+    values: Vec<Vec4>,
+}
+
+impl Lights {
+    /// The openness `sky`, and the transmittance of `density` towards three lamps.
+    pub fn new(density: &Grid, sky: &Grid, lamps: [Vec3; 3]) -> Self {
+        let mut sweeps: Vec<Grid> = lamps.par_iter().map(|&d| transmittance(density, d)).collect();
+        let sky = density.resampled(sky);
+        let (c, b, a) = (sweeps.pop(), sweeps.pop(), sweeps.pop());
+        let of = |g: &Option<Grid>, i: usize| g.as_ref().map_or(1.0, |g| g.values[i]);
+        let values = sky.par_iter().enumerate().map(|(i, &s)| Vec4::new(s, of(&a, i), of(&b, i), of(&c, i))).collect();
+        Self { frame: density.clone_frame(), values }
+    }
+
+    /// The four values at `p`, between the cells around it.
+    pub fn sample(&self, p: Vec3) -> Vec4 {
+        let (i, f, [sx, sy]) = self.frame.place(p);
+        let v = &self.values;
+        let row = |i: usize| v[i] + (v[i + 1] - v[i]) * f.z;
+        let plane = |i: usize| {
+            let (a, b) = (row(i), row(i + sy));
+            a + (b - a) * f.y
+        };
+        let (a, b) = (plane(i), plane(i + sx));
+        a + (b - a) * f.x
+    }
+}
+
 /// How open each cell is to a sky all around that is brighter above: 0 buried, 1 free.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn openness(density: &Grid, task: &Task) -> Result<Grid, Cancelled> {
-    let coarse = density.halved();
+pub fn openness(coarse: &Grid, task: &Task) -> Result<Grid, Cancelled> {
     let directions: Vec<Vec3> = (0..27)
         .map(|k| Vec3::new((k / 9) as f32 - 1.0, (k / 3 % 3) as f32 - 1.0, (k % 3) as f32 - 1.0))
         .filter(|d| matches!(d.length_squared() as u32, 1 | 3))
         .map(Vec3::normalize)
         .collect();
-    let sweeps: Vec<Grid> = directions.par_iter().map(|&d| transmittance(&coarse, d)).collect();
+    let sweeps: Vec<Grid> = directions.par_iter().map(|&d| transmittance(coarse, d)).collect();
     task.check()?;
     let mut open = coarse.clone_frame();
     open.values = vec![0.0; coarse.values.len()];
@@ -293,6 +349,104 @@ pub fn openness(density: &Grid, task: &Task) -> Result<Grid, Cancelled> {
     }
     Ok(open)
 }
+
+/// Cells along each side of a map of depths.
+const MAP: usize = 384;
+
+/// The surfaces as a lamp sees them: per cell the depth of the nearest.
+#[derive(Clone, Debug)]
+pub struct Depths {
+    axes: Mat3,
+    origin: Vec2,
+    cell: f32,
+    nearest: Vec<f32>,
+}
+
+impl Depths {
+    /// What a lamp in the direction `to_light` sees of `meshes`.
+    pub fn new(meshes: &[&Mesh], to_light: Vec3) -> Self {
+        let axes = Mat3::from_cols(to_light.any_orthonormal_vector(), Vec3::ZERO, to_light);
+        let axes = Mat3::from_cols(axes.x_axis, to_light.cross(axes.x_axis), to_light);
+        let turned: Vec<Vec<Vec3>> =
+            meshes.iter().map(|m| m.positions.iter().map(|&p| axes.transpose() * p).collect()).collect();
+        let bounds = Bounds::of(turned.iter().flatten().filter(|p| p.is_finite()).copied());
+        let bounds = if bounds.is_empty() { Bounds::of([Vec3::ZERO]) } else { bounds };
+        let cell = (bounds.size().truncate().max_element() / (MAP as f32 - 4.0)).max(1e-4);
+        let origin = bounds.min.truncate() - Vec2::splat(2.0 * cell);
+        let mut map = Self { axes, origin, cell, nearest: vec![f32::NEG_INFINITY; MAP * MAP] };
+        for (mesh, turned) in meshes.iter().zip(&turned) {
+            for t in &mesh.triangles {
+                map.cover(t.map(|v| {
+                    let p = turned[v as usize];
+                    ((p.truncate() - origin) / cell).extend(p.z)
+                }));
+            }
+        }
+        map
+    }
+
+    fn cover(&mut self, c: [Vec3; 3]) {
+        if c.iter().any(|p| !p.is_finite()) {
+            return;
+        }
+        let (lo, hi) = (c[0].min(c[1]).min(c[2]), c[0].max(c[1]).max(c[2]));
+        let edge = |a: Vec3, b: Vec3, x: f32, y: f32| (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+        let area = edge(c[0], c[1], c[2].x, c[2].y);
+        if area.abs() < 1e-9 {
+            return;
+        }
+        for y in lo.y.max(0.0) as usize..=(hi.y as usize).min(MAP - 1) {
+            for x in lo.x.max(0.0) as usize..=(hi.x as usize).min(MAP - 1) {
+                let (px, py) = (x as f32 + 0.5, y as f32 + 0.5);
+                let (u, v) = (edge(c[1], c[2], px, py) / area, edge(c[2], c[0], px, py) / area);
+                if u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
+                    let z = c[0].z * u + c[1].z * v + c[2].z * (1.0 - u - v);
+                    let cell = &mut self.nearest[y * MAP + x];
+                    *cell = cell.max(z);
+                }
+            }
+        }
+    }
+
+    /// The fraction of the lamp that the surfaces leave free at `p`; its edge is as soft as a wide lamp's.
+    pub fn sample(&self, p: Vec3) -> f32 {
+        let q = self.axes.transpose() * p;
+        let at = (q.truncate() - self.origin) / self.cell - Vec2::splat(0.5);
+        if !(at.min_element() > 0.0 && at.max_element() < MAP as f32 - 1.0) {
+            return 1.0;
+        }
+        // 0.45 cm of lamp at the distance of a nose, in rings; depth within 0.5 cm counts in part.
+        let reach = 0.45 / self.cell;
+        let mut free = 0.0;
+        for (x, y) in RING {
+            let s = at + Vec2::new(x, y) * reach;
+            let (i, j) = (s.x.clamp(0.0, MAP as f32 - 2.0), s.y.clamp(0.0, MAP as f32 - 2.0));
+            let (fx, fy) = (i - i.floor(), j - j.floor());
+            let k = j as usize * MAP + i as usize;
+            let lit = |k: usize| (1.0 - (self.nearest[k] - q.z - 0.25) / 0.5).clamp(0.0, 1.0);
+            let (lo, hi) = (lit(k) + (lit(k + 1) - lit(k)) * fx, lit(k + MAP) + (lit(k + MAP + 1) - lit(k + MAP)) * fx);
+            free += lo + (hi - lo) * fy;
+        }
+        free / RING.len() as f32
+    }
+}
+
+/// Places on a disc of radius 1: the middle and two rings.
+const RING: [(f32, f32); 13] = [
+    (0.0, 0.0),
+    (0.5, 0.0),
+    (-0.5, 0.0),
+    (0.0, 0.5),
+    (0.0, -0.5),
+    (0.92, 0.38),
+    (0.38, 0.92),
+    (-0.38, 0.92),
+    (-0.92, 0.38),
+    (-0.92, -0.38),
+    (-0.38, -0.92),
+    (0.38, -0.92),
+    (0.92, -0.38),
+];
 
 #[cfg(test)]
 mod tests {
@@ -337,7 +491,7 @@ mod tests {
     #[test]
     fn an_empty_scene_is_open() {
         let grid = density(&[], &[], &Task::new()).unwrap();
-        let open = openness(&grid, &Task::new()).unwrap();
+        let open = openness(&grid.coarse, &Task::new()).unwrap();
         assert!((open.sample(Vec3::ZERO) - 1.0).abs() < 1e-5);
         assert!(open.sample(Vec3::splat(1e9)).is_finite());
     }
@@ -348,7 +502,7 @@ mod tests {
         let root =
             crate::geometry::Root { id: 1, position: Vec3::ZERO, normal: Vec3::Y, uv: glam::Vec2::ZERO, triangle: 0 };
         strands.push(root, 0, [Vec3::ZERO, Vec3::new(0.0, 3.0, 0.0), Vec3::new(0.0, 3.0, 7.0)]);
-        let grid = density(&[(&strands, 0.02, 0.02)], &[], &Task::new()).unwrap();
+        let grid = density(&[(&strands, 0.02, 0.02)], &[], &Task::new()).unwrap().hair;
         let area: f32 = grid.values.iter().sum::<f32>() * grid.cell.powi(3) / std::f32::consts::FRAC_PI_4;
         assert!((area - 10.0 * 0.02).abs() < 1e-4, "{area}");
     }

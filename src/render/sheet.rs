@@ -12,8 +12,8 @@ use super::camera::{Camera, Framing, axes, frame};
 use super::lettering::{self, Anchor};
 use super::overlay::{self, Label};
 use super::raster::{self, Canvas};
-use super::shade::{Coat, Skin, Studio};
-use super::shadow::{Grid, density, openness};
+use super::shade::{Coat, Skin, Sky, Studio};
+use super::shadow::{Density, density};
 use super::strands::{Bundle, Ink};
 use super::surface::{self, Shell};
 
@@ -167,12 +167,13 @@ pub fn sheet(scene: &Scene, options: &SheetOptions, task: &Task) -> Result<Pictu
     let views: &[View] = if scene.views.is_empty() { &[View::Front] } else { &scene.views };
     let layout = Layout::new(views.len(), options)?;
     let paper = paper(scene.look.background);
+    task.progress("density", 0.0);
     let stage = Stage::new(scene, task)?;
+    task.progress("framing", 0.0);
     let framing = frame(scene, views);
     let mut picture = blank(layout.width, layout.height, paper.paper);
     let mut labels = Vec::new();
     for (i, &view) in views.iter().enumerate() {
-        task.progress(view.text(), i as f32 / views.len() as f32);
         let camera = camera(view, framing.centres[i], &framing, options);
         let words = stage.view(scene, &camera, options, paper.paper, task).map(|(pixels, words)| {
             paste(&mut picture, &pixels, layout.corner(i, options), options.width);
@@ -180,6 +181,7 @@ pub fn sheet(scene: &Scene, options: &SheetOptions, task: &Task) -> Result<Pictu
         })?;
         labels.push((camera, words));
     }
+    task.progress("lettering", 0.95);
     if options.lettering {
         letter(&mut picture, scene, views, &layout, options, &framing, &paper, &labels);
     }
@@ -219,8 +221,8 @@ fn paste(picture: &mut Picture, view: &[u8], (x, y): (u32, u32), width: u32) {
 /// What all views of a scene share.
 struct Stage {
     meshes: Vec<(Mesh, Skin)>,
-    density: Grid,
-    open: Grid,
+    density: Density,
+    sky: Sky,
 }
 
 impl Stage {
@@ -243,8 +245,8 @@ impl Stage {
             .collect();
         let shapes: Vec<&Mesh> = meshes.iter().map(|(m, _)| m).collect();
         let density = density(&hair, &shapes, task)?;
-        let open = openness(&density, task)?;
-        Ok(Self { meshes, density, open })
+        let sky = Sky::new(&density, task)?;
+        Ok(Self { meshes, density, sky })
     }
 
     /// One view: its bytes, and words for the lettering.
@@ -258,9 +260,12 @@ impl Stage {
     ) -> Result<(Vec<u8>, Vec<Label>), Cancelled> {
         let ss = options.supersample as usize;
         let fine = camera.enlarged(ss);
-        let studio = Studio::new(&fine, &self.density, &self.open);
+        let meshes: Vec<&Mesh> = self.meshes.iter().map(|(mesh, _)| mesh).collect();
+        task.progress("light", 0.0);
+        let studio = Studio::new(&fine, &self.density, &meshes, &self.sky);
         task.check()?;
         let shells: Vec<Shell> = self.meshes.iter().map(|(mesh, skin)| Shell { mesh, skin: *skin }).collect();
+        task.progress("head", 0.2);
         let layer = surface::draw(&shells, &fine, &studio, task)?;
         let pen = (options.width as f32 / 520.0).clamp(0.7, 2.5);
         let drawing = scene.look.debug.then(|| overlay::draw(scene, camera, pen));
@@ -277,6 +282,7 @@ impl Stage {
             background: paper.to_linear(),
             fade: 0.10,
         };
+        task.progress("hair", 0.4);
         let pixels = raster::draw(&bundles, &canvas, task)?;
         Ok((pixels, drawing.map(|d| d.labels).unwrap_or_default()))
     }

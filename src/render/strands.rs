@@ -1,5 +1,7 @@
 //! Lines on their way to the picture: projected once, simplified to a fraction of a pixel, sorted into tiles.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -47,21 +49,24 @@ pub enum Ink<'a> {
 pub struct Vertex {
     /// Pixels and depth.
     pub at: Vec3,
+    /// Where along its line, 0 first node to 1 last.
+    pub along: f32,
     /// Node of the bundle at or before it.
     pub node: u32,
-    /// Fraction of the way to the next node.
-    pub part: f32,
     /// Line of the bundle.
     pub line: u32,
 }
 
 /// Simplified lines and which tiles they touch. Segment `i` joins the vertices `i` and `i + 1`.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Chunk {
     /// Which bundle.
     pub bundle: u32,
     /// Vertices, line after line.
     pub vertices: Vec<Vertex>,
+    /// Colours of the vertices as far as they are known: 10 bits per channel of the square root, and one that is always
+    /// set. Tiles that share a vertex find the same colour, so it does not matter which comes first.
+    colours: Vec<AtomicU32>,
     /// Segments, tile after tile.
     segments: Vec<u32>,
     /// Where each tile begins in `segments`, and the end.
@@ -69,6 +74,27 @@ pub struct Chunk {
 }
 
 impl Chunk {
+    /// The linear colour of a vertex, found by `shade` when it is asked for first. Channels are within 0..=1.
+    pub fn colour(&self, vertex: usize, shade: impl FnOnce() -> Vec3) -> Vec3 {
+        let mut bits = self.colours[vertex].load(Ordering::Relaxed);
+        if bits == 0 {
+            let c = shade().clamp(Vec3::ZERO, Vec3::ONE).map(f32::sqrt) * 1023.0 + Vec3::splat(0.5);
+            bits = 1 << 30 | (c.x as u32) << 20 | (c.y as u32) << 10 | c.z as u32;
+            self.colours[vertex].store(bits, Ordering::Relaxed);
+        }
+        let c = Vec3::new((bits >> 20 & 1023) as f32, (bits >> 10 & 1023) as f32, (bits & 1023) as f32) / 1023.0;
+        c * c
+    }
+
+    /// The direction of the line at a vertex, in pixels and depth, from its neighbours.
+    pub fn direction(&self, vertex: usize) -> Vec3 {
+        let here = &self.vertices[vertex];
+        let beside = |k: Option<usize>| {
+            k.and_then(|k| self.vertices.get(k)).filter(|v| v.line == here.line).map_or(here.at, |v| v.at)
+        };
+        beside(Some(vertex + 1)) - beside(vertex.checked_sub(1))
+    }
+
     /// Segments that touch a tile.
     pub fn segments(&self, tile: usize) -> &[u32] {
         &self.segments[self.starts[tile] as usize..self.starts[tile + 1] as usize]
@@ -147,7 +173,13 @@ fn simplify(bundle: &Bundle, line: usize, camera: &Camera, nodes: &mut Vec<Vec3>
     if nodes.len() < 2 || outside || nodes.iter().any(|p| !p.is_finite()) {
         return;
     }
-    let vertex = |at, k: usize, part| Vertex { at, node: (first + k) as u32, part, line: line as u32 };
+    let last = (nodes.len() - 1) as f32;
+    let vertex = |at, k: usize, part: f32| Vertex {
+        at,
+        along: (k as f32 + part) / last,
+        node: (first + k) as u32,
+        line: line as u32,
+    };
     out.push(vertex(nodes[0], 0, 0.0));
     let mut i = 0;
     while i + 1 < nodes.len() {
@@ -214,5 +246,6 @@ fn sorted(bundle: u32, vertices: Vec<Vertex>, width: [f32; 2], tiles: Tiles) -> 
             next[tile] += 1;
         }
     }
-    Chunk { bundle, vertices, segments, starts }
+    let colours = vertices.iter().map(|_| AtomicU32::new(0)).collect();
+    Chunk { bundle, vertices, colours, segments, starts }
 }

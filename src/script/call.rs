@@ -1,7 +1,6 @@
 //! One call from a script: its arguments read strictly, its errors and warnings given a place.
 
 use std::cell::OnceCell;
-use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -13,8 +12,11 @@ use super::registry::{Entry, Shape};
 use super::session::{Raised, Session, Timing};
 use super::source::CallText;
 use super::{Diagnostic, Frame, Severity, protect, strict, trace};
-use crate::params::{self, Function, Handle, Object, Params, Problem, Table, Value};
-use crate::task::{Cancelled, Task, Warned, Warning};
+use crate::geometry::Root;
+use crate::groom::GroomError;
+use crate::math::rng::Key;
+use crate::params::{self, Function, Handle, Object, Params, Problem, Reader, Table, Value};
+use crate::task::{Task, Warned, Warning};
 
 /// What bindings give back.
 pub type Result<T> = std::result::Result<T, Raised>;
@@ -37,15 +39,8 @@ pub struct Call<'a> {
 /// # Errors
 /// A [`Raised`] with every problem of the arguments, or what the function raised.
 pub fn invoke(lua: &Lua, session: &Session, entry: &'static Entry, args: MultiValue) -> mlua::Result<mlua::Value> {
-    let mut call = Call {
-        session,
-        lua,
-        entry,
-        this: None,
-        table: Table::default(),
-        functions: vec![],
-        stack: OnceCell::new(),
-    };
+    let mut call =
+        Call { session, lua, entry, this: None, table: Table::default(), functions: vec![], stack: OnceCell::new() };
     call.take(args)?;
     let started = Instant::now();
     let value = (entry.call)(&call)?;
@@ -137,6 +132,58 @@ impl Call<'_> {
         params::read(&self.table).map_err(|problems| self.problems(problems))
     }
 
+    /// The arguments as two parameter structs that share one table.
+    ///
+    /// # Errors
+    /// Every problem found in them.
+    pub fn read_both<A: Params, B: Params>(&self) -> Result<(A, B)> {
+        let fields: Vec<_> = A::fields().into_iter().chain(B::fields()).collect();
+        let mut reader = Reader::default();
+        reader.reject_unknown(&self.table, &fields, self.entry.name);
+        let part = |own: Vec<params::Field>| Table {
+            items: if own.iter().any(|f| f.is_positional) { self.table.items.clone() } else { vec![] },
+            fields: own
+                .iter()
+                .filter_map(|f| Some((f.name.to_owned(), self.table.fields.get(f.name)?.clone())))
+                .collect(),
+        };
+        let both = (A::read(&part(A::fields()), &mut reader), B::read(&part(B::fields()), &mut reader));
+        let problems = reader.problems();
+        match both {
+            (Some(a), Some(b)) if problems.is_empty() => Ok((a, b)),
+            _ => Err(self.problems(problems)),
+        }
+    }
+
+    /// A call's own seed together with the run's: with the run's seed 0 the call's own.
+    pub fn seed(&self, own: u64) -> u64 {
+        match self.session.options.seed {
+            0 => own,
+            run => Key::new(run, "run").with(own).bits(),
+        }
+    }
+
+    /// Asks a predicate about every root.
+    ///
+    /// # Errors
+    /// What it raised, or that it did not return true or false; `path` is its field.
+    pub fn choose(&self, test: Function, path: &str, roots: &[Root]) -> Result<Vec<bool>> {
+        let ask = |root: &Root| match self.script(test, &[Value::Vector(root.position)])? {
+            Value::Bool(b) => Ok(b),
+            other => {
+                let message = format!("the function returned {} `{other}`", other.type_name());
+                let hint = "it must return true or false, as in `function(root) return root.x > 0 end`";
+                Err(self.problem_at(path, message, Some(hint.into())))
+            }
+        };
+        roots.iter().map(ask).collect()
+    }
+
+    /// An error of the method, about the call.
+    pub fn groom(&self, error: &GroomError) -> Raised {
+        self.problem(error.to_string(), None)
+    }
+
     /// The arguments as they came.
     pub fn table(&self) -> &Table {
         &self.table
@@ -154,7 +201,9 @@ impl Call<'_> {
     pub fn source(&self) -> Arc<str> {
         match self.stack().first() {
             Some(frame) => {
-                let file = Path::new(&frame.file).strip_prefix(self.session.options.folder()).unwrap_or(Path::new(&frame.file));
+                let file = Path::new(&frame.file)
+                    .strip_prefix(self.session.options.folder())
+                    .unwrap_or(Path::new(&frame.file));
                 format!("{}:{}", file.display(), frame.line).into()
             }
             None => "".into(),
@@ -178,11 +227,6 @@ impl Call<'_> {
     /// An error about a field: `locals[2].queue`.
     pub fn problem_at(&self, path: &str, message: impl Into<String>, hint: Option<String>) -> Raised {
         self.problems(vec![Problem { path: path.to_owned(), message: message.into(), hint }])
-    }
-
-    /// An error of the core about a field, or about the call when `path` is empty.
-    pub fn fail(&self, path: &str, error: &dyn Display, hint: Option<String>) -> Raised {
-        self.problem_at(path, error.to_string(), hint)
     }
 
     /// Errors about fields.
@@ -221,11 +265,6 @@ impl Call<'_> {
             self.warn("", warning);
         }
         warned.value
-    }
-
-    /// The error of a cancelled computation.
-    pub fn cancelled(&self, cancelled: Cancelled) -> Raised {
-        Raised(vec![Diagnostic::error(cancelled.to_string())])
     }
 
     /// Calls one of the script's own functions.

@@ -58,7 +58,14 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error without a place.
     pub fn error(message: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, message: message.into(), label: None, place: None, trace: vec![], hints: vec![] }
+        Self {
+            severity: Severity::Error,
+            message: message.into(),
+            label: None,
+            place: None,
+            trace: vec![],
+            hints: vec![],
+        }
     }
 
     /// A warning without a place.

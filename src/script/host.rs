@@ -14,6 +14,7 @@ use super::files::{Access, Files};
 use super::sandbox::{Deadline, Interruptible};
 use super::session::{Raised, Session, Timing};
 use super::{Diagnostic, Parameter, Sources, bind, protect, sandbox, trace};
+use crate::head::load::Unit;
 use crate::params::Value;
 use crate::scene::Scene;
 use crate::task::Task;
@@ -29,6 +30,8 @@ pub struct Options {
     pub seed: u64,
     /// Head that `coif.head()` gives instead of the built-in one.
     pub head: Option<PathBuf>,
+    /// What one unit of that head's file is; by its format when not given.
+    pub head_unit: Option<Unit>,
     /// Folders and files that may be read besides the script's folder.
     pub allow: Vec<PathBuf>,
     /// Longest time for the script and everything it calls.
@@ -43,6 +46,7 @@ impl Options {
             set: BTreeMap::new(),
             seed: 0,
             head: None,
+            head_unit: None,
             allow: vec![],
             time_limit: Duration::from_secs(60),
         }
@@ -104,6 +108,7 @@ pub fn run(options: &Options, files: Arc<dyn Files>, task: &Task) -> Outcome {
         logged: Cell::new(0),
         parameters: RefCell::default(),
         timings: RefCell::default(),
+        heads: RefCell::default(),
     });
     let deadline = Deadline::start(task, options.time_limit);
     let result = script(&session).and_then(|scene| unknown_parameters(&session).map(|()| scene));
@@ -129,7 +134,8 @@ pub fn run(options: &Options, files: Arc<dyn Files>, task: &Task) -> Outcome {
 fn script(session: &Rc<Session>) -> Result<Scene, Raised> {
     let path = &session.options.script;
     let file = path.to_string_lossy().into_owned();
-    let bytes = session.access.read(path).map_err(|e| Raised(vec![Diagnostic::error(e.to_string()).hint_opt(e.hint())]))?;
+    let bytes =
+        session.access.read(path).map_err(|e| Raised(vec![Diagnostic::error(e.to_string()).hint_opt(e.hint())]))?;
     let text = String::from_utf8(bytes)
         .map_err(|_| Raised(vec![Diagnostic::error(format!("`{file}` is not a text in UTF-8"))]))?;
     session.sources.borrow_mut().insert(file.clone(), text.clone());

@@ -107,7 +107,8 @@ mod tests {
 
     #[test]
     fn nothing_is_lost() {
-        for text in ["", "a.b:c{1,'x\\'y'}", "--[==[ a ]] ]==] x", "[[", "\"open\nnext", "é = 1 -- ü", "\\", "x = \"\\"] {
+        for text in ["", "a.b:c{1,'x\\'y'}", "--[==[ a ]] ]==] x", "[[", "\"open\nnext", "é = 1 -- ü", "\\", "x = \"\\"]
+        {
             assert_eq!(tokens(text).iter().map(|t| t.text).collect::<String>(), text);
         }
     }

@@ -91,7 +91,10 @@ fn locate(lua: &Lua, session: &Session, name: &str) -> Found {
                 let nearest = crate::params::nearest(name, LIBRARY.iter().map(|(n, _)| *n));
                 let hint = match nearest {
                     Some(n) => format!("did you mean `{n}`?"),
-                    None => format!("it has {}", LIBRARY.iter().map(|(n, _)| format!("`{n}`")).collect::<Vec<_>>().join(", ")),
+                    None => format!(
+                        "it has {}",
+                        LIBRARY.iter().map(|(n, _)| format!("`{n}`")).collect::<Vec<_>>().join(", ")
+                    ),
                 };
                 Err((format!("Coif's library has no `{name}`"), Some(hint)))
             }

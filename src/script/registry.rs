@@ -40,6 +40,16 @@ impl Entry {
         Self { name, doc: P::DOC, fields: P::fields, shape: Shape::Table, returns, sealed: None, call }
     }
 
+    /// A function that takes one table, described by `A` and `B` together.
+    pub const fn both<A: Params, B: Params>(
+        name: &'static str,
+        returns: &'static str,
+        call: fn(&Call) -> Result<Value>,
+    ) -> Self {
+        let fields = || A::fields().into_iter().chain(B::fields()).collect();
+        Self { name, doc: A::DOC, fields, shape: Shape::Table, returns, sealed: None, call }
+    }
+
     /// A function that takes the fields of `P` one after the other.
     pub const fn positional<P: Params>(
         name: &'static str,
@@ -57,6 +67,13 @@ impl Entry {
         call: fn(&Call) -> Result<Value>,
     ) -> Self {
         Self { name, doc, fields: Vec::new, shape: Shape::Positional, returns, sealed: None, call }
+    }
+
+    /// The same with another description.
+    #[must_use]
+    pub const fn about(mut self, doc: &'static str) -> Self {
+        self.doc = doc;
+        self
     }
 
     /// The same, giving a table with strict names; `what` is what messages call it.
@@ -100,7 +117,12 @@ pub struct Noun {
 
 impl Noun {
     /// The noun of an object type.
-    pub fn of<T: Object>(doc: &'static str, methods: Vec<Entry>, getters: Vec<Getter>, text: fn(&Handle) -> String) -> Self {
+    pub fn of<T: Object>(
+        doc: &'static str,
+        methods: Vec<Entry>,
+        getters: Vec<Getter>,
+        text: fn(&Handle) -> String,
+    ) -> Self {
         Self { name: T::NAME, doc, methods, getters, text }
     }
 }

@@ -60,7 +60,9 @@ pub fn open(session: Rc<Session>) -> mlua::Result<Lua> {
 pub fn close(lua: &Lua) -> mlua::Result<()> {
     let globals = lua.globals();
     for name in strict::names(&globals) {
-        if name != "_G" && let Ok(library) = globals.raw_get::<mlua::Table>(name.as_str()) {
+        if name != "_G"
+            && let Ok(library) = globals.raw_get::<mlua::Table>(name.as_str())
+        {
             if library.is_readonly() {
                 continue;
             }
@@ -107,7 +109,9 @@ fn seed_random(lua: &Lua, seed: u64) -> mlua::Result<()> {
             };
             // Also catches NaN.
             if !(low <= high && high - low < 9e15) {
-                return Err(mlua::Error::runtime(format!("math.random: the interval {low} to {high} is empty or too large")));
+                return Err(mlua::Error::runtime(format!(
+                    "math.random: the interval {low} to {high} is empty or too large"
+                )));
             }
             Ok((low + (unit * (high - low + 1.0)).floor()).min(high))
         })?,

@@ -1,14 +1,17 @@
 //! What one run knows: options, files, and everything that is collected on the way.
 
 use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Duration;
 
 use mlua::Lua;
 
 use super::files::Access;
 use super::{Diagnostic, Options, Parameter, Sources};
+use crate::head::Head;
 use crate::task::Task;
 
 /// Errors on their way out of a binding, through Lua, to the host.
@@ -73,6 +76,8 @@ pub struct Session {
     pub parameters: RefCell<Vec<Parameter>>,
     /// Calls that took time, in order.
     pub timings: RefCell<Vec<Timing>>,
+    /// Heads made so far, by what was asked for.
+    pub heads: RefCell<BTreeMap<String, Arc<Head>>>,
 }
 
 /// The session of a VM.

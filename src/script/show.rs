@@ -31,7 +31,8 @@ pub fn show(diagnostic: &Diagnostic, sources: &Sources, styled: bool) -> String 
             Some(name) => format!("in function `{name}`"),
             None => "in the body of the file".to_owned(),
         };
-        group = group.element(Level::NOTE.with_name("called from").message(format!("{}:{} {what}", frame.file, frame.line)));
+        group = group
+            .element(Level::NOTE.with_name("called from").message(format!("{}:{} {what}", frame.file, frame.line)));
     }
     if trace.len() > LONGEST_TRACE {
         let more = trace.len() - LONGEST_TRACE;

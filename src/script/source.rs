@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::lexer::{Kind, Token, tokens};
 use super::Place;
+use super::lexer::{Kind, Token, tokens};
 
 /// Every script that was read, by the name it has in messages.
 #[derive(Clone, Debug, Default)]
@@ -64,7 +64,8 @@ impl Sources {
         let Some(text) = self.text(file) else { return self.line(file, line) };
         let tokens: Vec<Token> = tokens(text).into_iter().filter(|t| t.kind != Kind::Blank).collect();
         let name = call.function.rsplit(['.', ':']).next().unwrap_or(call.function);
-        let calls = (0..tokens.len()).filter(|&i| tokens[i].line == line && tokens[i].kind == Kind::Name && tokens[i].text == name);
+        let calls = (0..tokens.len())
+            .filter(|&i| tokens[i].line == line && tokens[i].kind == Kind::Name && tokens[i].text == name);
         let mut best: Option<(bool, Range<usize>)> = None;
         for i in calls {
             let (is_whole, span) = descend(&tokens, i, call);
@@ -179,7 +180,14 @@ fn end_of_group(tokens: &[Token], at: usize) -> usize {
     let mut depth = 0_usize;
     for i in at..tokens.len() {
         // An `if` that gives a value has no `end`; it stands where a statement cannot.
-        let is_value = |i: usize| i.checked_sub(1).is_some_and(|p| matches!(tokens[p].text, "=" | "(" | "," | "{" | "return" | "and" | "or" | "not" | "else" | "+" | "-" | "*" | "/" | ".."));
+        let is_value = |i: usize| {
+            i.checked_sub(1).is_some_and(|p| {
+                matches!(
+                    tokens[p].text,
+                    "=" | "(" | "," | "{" | "return" | "and" | "or" | "not" | "else" | "+" | "-" | "*" | "/" | ".."
+                )
+            })
+        };
         match tokens[i].text {
             "{" | "(" | "[" | "function" | "do" | "repeat" => depth += 1,
             "if" if depth > 0 && !is_value(i) => depth += 1,

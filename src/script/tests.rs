@@ -59,7 +59,9 @@ fn endless_scripts_are_stopped() {
         assert_eq!(outcome.ending, Ending::Failed, "{text}");
         // A few of them end in an error of their own before the time is over.
         assert!(
-            message.contains("ran longer than 0.2 s") || message.contains("overflow") || message.contains("the script raised"),
+            message.contains("ran longer than 0.2 s")
+                || message.contains("overflow")
+                || message.contains("the script raised"),
             "{text}: {message}"
         );
         // Not a measurement: it would hang for ever.
@@ -77,13 +79,32 @@ fn memory_is_bounded() {
         "local s = ('x'):rep(1e8) local t = {} for i = 1, 1000 do t[i] = s .. i end",
     ] {
         let message = error(text);
-        assert!(message.contains("not enough memory") || message.contains("too large") || message.contains("overflow"), "{text}: {message}");
+        assert!(
+            message.contains("not enough memory") || message.contains("too large") || message.contains("overflow"),
+            "{text}: {message}"
+        );
     }
 }
 
 #[test]
 fn there_are_no_doors() {
-    for name in ["io", "os", "debug", "loadstring", "load", "dofile", "loadfile", "getfenv", "setfenv", "newproxy", "collectgarbage", "gcinfo", "package", "jit", "ffi"] {
+    for name in [
+        "io",
+        "os",
+        "debug",
+        "loadstring",
+        "load",
+        "dofile",
+        "loadfile",
+        "getfenv",
+        "setfenv",
+        "newproxy",
+        "collectgarbage",
+        "gcinfo",
+        "package",
+        "jit",
+        "ffi",
+    ] {
         let message = error(&format!("return {name}"));
         assert!(message.contains("does not exist here") || message.contains("unknown name"), "{name}: {message}");
         assert_eq!(log(&format!("print(rawget(_G, '{name}'))")), ["nil"], "{name}");
@@ -108,9 +129,14 @@ fn there_are_no_doors() {
         assert!(!error(text).is_empty(), "{text}");
     }
     // Bytecode is not text, and no text of ours.
-    let outcome = run(&options(5.0), Arc::new(Memory::default().with("style/a.lua", b"\x06\x03\x01\x02\xff".to_vec())), &Task::new());
+    let outcome = run(
+        &options(5.0),
+        Arc::new(Memory::default().with("style/a.lua", b"\x06\x03\x01\x02\xff".to_vec())),
+        &Task::new(),
+    );
     assert_eq!(outcome.ending, Ending::Failed);
-    let outcome = run(&options(5.0), Arc::new(Memory::default().with("style/a.lua", b"\x05\x03\x01\x02".to_vec())), &Task::new());
+    let outcome =
+        run(&options(5.0), Arc::new(Memory::default().with("style/a.lua", b"\x05\x03\x01\x02".to_vec())), &Task::new());
     assert_eq!(outcome.ending, Ending::Failed);
 }
 
@@ -130,12 +156,18 @@ fn randomness_follows_the_seed_alone() {
     assert_ne!(with(1)[0], with(2)[0]);
     assert_eq!(with(2)[1], "2");
     assert!(error("math.random(3, 1)").contains("empty"));
-    assert_eq!(log("math.randomseed(7) local a = math.random() math.randomseed(7) print(a == math.random())"), ["true"]);
+    assert_eq!(
+        log("math.randomseed(7) local a = math.random() math.randomseed(7) print(a == math.random())"),
+        ["true"]
+    );
 }
 
 #[test]
 fn printing_goes_to_the_log_and_is_bounded() {
-    assert_eq!(log("print('a', 1, nil, true) print(vector.create(1, 2, 3), coif.up)"), ["a\t1\tnil\ttrue", "vector(1, 2, 3)\tvector(0, 1, 0)"]);
+    assert_eq!(
+        log("print('a', 1, nil, true) print(vector.create(1, 2, 3), coif.up)"),
+        ["a\t1\tnil\ttrue", "vector(1, 2, 3)\tvector(0, 1, 0)"]
+    );
     let lines = log("for i = 1, 1e5 do print(('x'):rep(100)) end");
     assert!(lines.len() < 20_000 && lines.last().is_some_and(|l| l.contains("left out")));
     assert_eq!(log("print(coif.material.hair {})"), ["<hair material #2e1b12 to #6b432b>"]);
@@ -170,7 +202,8 @@ fn every_script_of_the_library_loads() {
 
 #[test]
 fn parameters_are_declared_and_set() {
-    let text = "local p = coif.params { n = { 3, min = 1, max = 5, integer = true, unit = 'cm', doc = 'how many' }, on = true,
+    let text =
+        "local p = coif.params { n = { 3, min = 1, max = 5, integer = true, unit = 'cm', doc = 'how many' }, on = true,
         c = '#ffffff', way = { 'up', choices = { 'up', 'down' } }, at = { { 0, 1, 2 } } }
         print(p.n, p.on, p.c, p.way, p.at.z)  return coif.scene {}";
     let with = |set: &[(&str, &str)]| {
@@ -182,7 +215,17 @@ fn parameters_are_declared_and_set() {
     assert_eq!(set.log, ["5\tfalse\t#000000\tdown\t3.5"]);
     assert_eq!(set.parameters.len(), 5);
     assert!(matches!(set.parameters.iter().find(|p| p.name == "n").map(|p| &p.default), Some(Value::Number(3.0))));
-    for bad in [("n", "6"), ("n", "2.5"), ("n", "x"), ("n", "nan"), ("on", "yes"), ("c", "red"), ("way", "left"), ("at", "1,2"), ("m", "1")] {
+    for bad in [
+        ("n", "6"),
+        ("n", "2.5"),
+        ("n", "x"),
+        ("n", "nan"),
+        ("on", "yes"),
+        ("c", "red"),
+        ("way", "left"),
+        ("at", "1,2"),
+        ("m", "1"),
+    ] {
         let outcome = with(&[bad]);
         assert_eq!(outcome.ending, Ending::Failed, "{bad:?}");
         assert_eq!(outcome.diagnostics[0].severity, Severity::Error);
@@ -192,7 +235,8 @@ fn parameters_are_declared_and_set() {
 
 #[test]
 fn a_caught_error_does_not_fail_the_run() {
-    assert_eq!(log("local ok, e = pcall(coif.material.hair, { shine = 3 }) print(ok, (tostring(e):gsub('\\n.*', '')))"), [
-        "false\tstyle/a.lua:1:39: error: `3` is out of range"
-    ]);
+    assert_eq!(
+        log("local ok, e = pcall(coif.material.hair, { shine = 3 }) print(ok, (tostring(e):gsub('\\n.*', '')))"),
+        ["false\tstyle/a.lua:1:39: error: `3` is out of range"]
+    );
 }

@@ -139,7 +139,10 @@ fn lower(message: &str) -> String {
 /// What usually helps against one of Luau's own errors.
 fn advice(message: &str) -> Option<String> {
     if let Some(name) = message.strip_prefix("attempt to index nil with ") {
-        return Some(format!("what stands before {} is nil: was it ever set, and in this scope?", name.replace('\'', "`")));
+        return Some(format!(
+            "what stands before {} is nil: was it ever set, and in this scope?",
+            name.replace('\'', "`")
+        ));
     }
     if message.starts_with("attempt to call a nil value") {
         return Some("no function of that name is known here; a local function must stand above its use".into());

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::geometry::Solid;
+use crate::groom;
 use crate::scene::{Body, Scene};
 
 /// What a part consists of.
@@ -74,7 +75,7 @@ pub fn count_inside(scene: &Scene, figures: &mut [PartFigures]) {
         .collect();
     for (part, figures) in scene.parts.iter().zip(figures) {
         if let Body::Hair(hair) = &part.body {
-            figures.inside = Some(solids.iter().map(|solid| { let _ = (solid, hair); 0usize }).sum());
+            figures.inside = Some(solids.iter().map(|solid| groom::count_inside(&hair.strands, solid)).sum());
         }
     }
 }

@@ -183,8 +183,7 @@ fn pictures(
 /// The files of a run for other programs, in memory.
 fn models(options: &RunOptions, scene: &Scene, task: &Task, stages: &mut Vec<Stage>) -> Result<Vec<Output>, RunError> {
     let name = &options.script.name();
-    let glb_options =
-        GlbOptions { strands: options.strands, tolerance: options.tolerance, ..GlbOptions::default() };
+    let glb_options = GlbOptions { strands: options.strands, tolerance: options.tolerance, ..GlbOptions::default() };
     let bytes = timed(stages, "glb", || glb(scene, &glb_options, task))?;
     let mut outputs = vec![Output { name: format!("{name}.glb"), bytes }];
     if options.guides {

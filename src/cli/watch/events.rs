@@ -48,8 +48,7 @@ pub fn stale(good_run: u64) -> Value {
 
 /// A half of a run is done.
 pub fn good(event: &str, report: &Report, written: &[Written]) -> Value {
-    let stages: Vec<Value> =
-        report.stages.iter().map(|s| json!({ "stage": s.what, "ms": text::ms(s.time) })).collect();
+    let stages: Vec<Value> = report.stages.iter().map(|s| json!({ "stage": s.what, "ms": text::ms(s.time) })).collect();
     let files: Vec<Value> =
         written.iter().map(|f| json!({ "path": f.path.to_string_lossy(), "bytes": f.bytes })).collect();
     let mut object = json!({ "event": event, "stages": stages, "files": files });

@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::geometry::frames;
+
 /// Cosine of the angle to the skin's normal below which a strand lies rather than stands: 45 degrees.
 const LYING: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
@@ -22,7 +24,7 @@ pub struct Frame {
 /// the strand first lies down on it.
 ///
 /// Nodes may coincide; where a direction cannot be told, the one before it holds.
-pub fn frames(positions: impl ExactSizeIterator<Item = Vec3>, outward: Vec3, out: &mut Vec<Frame>) {
+pub fn ribbon(positions: impl ExactSizeIterator<Item = Vec3>, outward: Vec3, out: &mut Vec<Frame>) {
     out.clear();
     out.extend(positions.map(|position| Frame { position, tangent: Vec3::ZERO, normal: Vec3::ZERO, v: 0.0 }));
     tangents(out, outward);
@@ -52,24 +54,13 @@ fn tangents(frames: &mut [Frame], outward: Vec3) {
     }
 }
 
-/// Fills normals by double reflection (Wang, Juettler, Zheng, Liu 2008, algorithm 1), the first one arbitrary.
+/// Fills rotation-minimising normals, the first one arbitrary.
 fn transport(frames: &mut [Frame]) {
     let Some(first) = frames.first_mut() else { return };
     first.normal = first.tangent.any_orthonormal_vector();
     for i in 1..frames.len() {
         let (a, b) = (frames[i - 1], frames[i]);
-        let reflect = |v: Vec3, axis: Vec3| {
-            let squared = axis.length_squared();
-            if squared > 0.0 { v - axis * (2.0 * v.dot(axis) / squared) } else { v }
-        };
-        let chord = b.position - a.position;
-        let (normal, tangent) = (reflect(a.normal, chord), reflect(a.tangent, chord));
-        let normal = reflect(normal, b.tangent - tangent);
-        // Rounding would add up over long strands.
-        frames[i].normal = normal
-            .reject_from_normalized(b.tangent)
-            .try_normalize()
-            .unwrap_or_else(|| b.tangent.any_orthonormal_vector());
+        frames[i].normal = frames::transport(a.normal, a.position, a.tangent, b.position, b.tangent);
     }
 }
 
@@ -102,7 +93,7 @@ mod tests {
 
     fn of(positions: &[Vec3], outward: Vec3) -> Vec<Frame> {
         let mut out = Vec::new();
-        frames(positions.iter().copied(), outward, &mut out);
+        ribbon(positions.iter().copied(), outward, &mut out);
         assert_eq!(out.len(), positions.len());
         for f in &out {
             assert!((f.tangent.length() - 1.0).abs() < 1e-5, "{f:?}");

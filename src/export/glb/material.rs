@@ -6,8 +6,8 @@ use super::document::{
     Anisotropy, Document, Extras, HairExtras, Image, Material, MaterialExtensions, Pbr, Sampler, Texture, TextureInfo,
     Unlit,
 };
+use crate::export::appearance;
 use crate::math::Colour;
-use crate::math::rng::Key;
 use crate::scene::{HairMaterial, MeshMaterial};
 
 /// Texels of the ramp from root to tip.
@@ -91,17 +91,12 @@ pub fn lines(document: &mut Document, name: &str, look: &HairMaterial) -> u32 {
     )
 }
 
-/// The colour at `v` (0 root, 1 tip), linear, mixed in linear light.
-pub fn ramp(look: &HairMaterial, v: f32) -> Vec3 {
-    look.root_colour.to_linear().lerp(look.tip_colour.to_linear(), v)
-}
-
 /// The picture of the ramp, root in the first row: a PNG brighter by the variation, so that vertex colours, which can
 /// only darken, give the stated colours on average.
 pub fn ramp_png(look: &HairMaterial) -> Vec<u8> {
     let mut pixels = Vec::with_capacity(RAMP * 2 * 3);
     for row in 0..RAMP {
-        let linear = ramp(look, (row as f32 + 0.5) / RAMP as f32) * brightest(look);
+        let linear = appearance::ramp(look, (row as f32 + 0.5) / RAMP as f32) * appearance::brightest(look);
         let colour = Colour::from_linear(linear);
         let texel = [colour.r, colour.g, colour.b].map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8);
         pixels.extend_from_slice(&texel);
@@ -114,17 +109,6 @@ pub fn ramp_png(look: &HairMaterial) -> Vec<u8> {
     let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&pixels));
     debug_assert!(written.is_ok(), "a vector takes every byte");
     bytes
-}
-
-/// How bright a strand is beside the brightest, 0..=1: uniform between `1 - variation` and `1 + variation` times the
-/// stated colour, keyed by the strand's identity.
-pub fn brightness(look: &HairMaterial, id: u64) -> f32 {
-    let t = Key::new(0, "export brightness").with(id).range(-1.0, 1.0);
-    (1.0 + look.variation.clamp(0.0, 1.0) * t) / brightest(look)
-}
-
-fn brightest(look: &HairMaterial) -> f32 {
-    1.0 + look.variation.clamp(0.0, 1.0)
 }
 
 fn factor(colour: Colour) -> [f32; 4] {

@@ -20,7 +20,7 @@ use self::buffer::{Pen, Plan, Slot};
 use self::document::{Buffer, Document, Extras, MeshEntry, Node, PartExtras, Primitive, SceneNodes};
 use self::shapes::{Drawn, METRES};
 use super::reduce::reduce;
-use super::{ExportError, check_hair};
+use super::{ExportError, check_hair, check_tolerance, with_normals};
 use crate::geometry::{Mesh, Strands};
 use crate::scene::{Body, HairMaterial, Part, Scene};
 use crate::task::Task;
@@ -101,20 +101,6 @@ pub fn guides_glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Ve
         file.strands(&named, &hair.guides, &hair.material, (StrandForm::Lines, 0.0), task, |e| e.kind = "guides")?;
     }
     file.finish(options.max_bytes, task)
-}
-
-fn check_tolerance(tolerance: f32) -> Result<(), ExportError> {
-    if tolerance.is_finite() && tolerance >= 0.0 { Ok(()) } else { Err(ExportError::Tolerance { tolerance }) }
-}
-
-fn with_normals(mesh: &Mesh) -> Cow<'_, Mesh> {
-    if mesh.normals.is_empty() {
-        let mut mesh = mesh.clone();
-        mesh.compute_normals();
-        Cow::Owned(mesh)
-    } else {
-        Cow::Borrowed(mesh)
-    }
 }
 
 /// What is still to be written into the buffer, once it exists.

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::buffer::{Attribute, Pen, Slot};
 use super::document as json;
-use super::frames::{Frame, frames};
-use super::material;
+use super::frames::{Frame, ribbon};
+use crate::export::appearance;
 use crate::export::reduce::Block;
 use crate::geometry::{Bounds, Mesh, Strands};
 use crate::scene::HairMaterial;
@@ -81,11 +81,12 @@ impl Drawn<'_> {
     pub fn write_ribbons(&self, bytes: &mut [u8], slot: &Slot, task: &Task) -> Result<Bounds, Cancelled> {
         self.write(bytes, slot, (2, 6), task, |strand, nodes, first, vertices, indices, scratch| {
             let root = &self.strands.roots[strand];
-            frames(nodes.iter().map(|&n| self.strands.points[n as usize]), root.normal, scratch);
-            let shade = (material::brightness(self.look, root.id) * 255.0).round() as u8;
+            ribbon(nodes.iter().map(|&n| self.strands.points[n as usize]), root.normal, scratch);
+            let shade =
+                (appearance::brightness(self.look, root.id) / appearance::brightest(self.look) * 255.0).round() as u8;
             let mut bounds = Bounds::EMPTY;
             for f in scratch.iter() {
-                let width = width(self.look, f.v);
+                let width = appearance::width(self.look, f.v);
                 // Seen from outside with the root below, u runs from left to right.
                 let side = f.tangent.cross(f.normal) * (0.5 * width);
                 for (u, position) in [(0.0, f.position - side), (1.0, f.position + side)] {
@@ -115,16 +116,11 @@ impl Drawn<'_> {
 
     /// Writes lines; bounds of the positions in metres.
     pub fn write_lines(&self, bytes: &mut [u8], slot: &Slot, task: &Task) -> Result<Bounds, Cancelled> {
-        let (root_colour, tip_colour) = (material::ramp(self.look, 0.0), material::ramp(self.look, 1.0));
+        let (root_colour, tip_colour) = (appearance::ramp(self.look, 0.0), appearance::ramp(self.look, 1.0));
         self.write(bytes, slot, (1, 2), task, |strand, nodes, first, vertices, indices, _| {
             let points = nodes.iter().map(|&n| self.strands.points[n as usize]);
-            let total: f32 = points.clone().zip(points.clone().skip(1)).map(|(a, b)| a.distance(b)).sum();
             let mut bounds = Bounds::EMPTY;
-            let (mut length, mut before) = (0.0, None);
-            for (k, p) in points.enumerate() {
-                length += before.map_or(0.0, |b: Vec3| b.distance(p));
-                before = Some(p);
-                let v = if total > 0.0 { length / total } else { k as f32 / (nodes.len() - 1) as f32 };
+            for (p, v) in points.clone().zip(appearance::shares(points)) {
                 let position = p * METRES;
                 bounds = Bounds { min: bounds.min.min(position), max: bounds.max.max(position) };
                 vertices.vec3(position);
@@ -132,7 +128,7 @@ impl Drawn<'_> {
                     vertices.fraction(channel);
                 }
                 vertices.fraction(1.0);
-                vertices.float(width(self.look, v) * METRES);
+                vertices.float(appearance::width(self.look, v) * METRES);
                 self.write_identity(strand, vertices);
             }
             for k in first..first + nodes.len() as u32 - 1 {
@@ -188,11 +184,6 @@ impl Drawn<'_> {
             })
             .try_reduce(|| Bounds::EMPTY, |a, b| Ok(a.union(b)))
     }
-}
-
-/// Diameter at `v`, cm.
-fn width(look: &HairMaterial, v: f32) -> f32 {
-    look.width * (1.0 + (look.taper - 1.0) * v)
 }
 
 /// Surfaces: (attributes, vertices, indices).

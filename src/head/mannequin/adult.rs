@@ -1,21 +1,31 @@
-//! The adult mannequin. Measures after the means of ANSUR II (head length 19.5, breadth 15.4, tragion to vertex 13).
+//! The adult mannequin: 23 cm from chin to vertex, 15.5 cm broad, 19.5 cm long, eyes at half height, ears from brow to
+//! nose.
 
 use glam::{Vec2, Vec3};
 
 use super::Form;
 use super::ear::Ear;
-use super::field::{bent_tube, carve, curve, ellipsoid, join, meet, sphere, tube};
+use super::field::{bent_tube, carve, curve, ellipsoid, join, meet, near, sphere, tube};
 use super::grid::{Ring, Zone};
 
 const EAR: Ear = Ear {
     centre: Vec3::new(7.6, 0.15, -1.3),
-    axes: [Vec3::new(0.28, -0.15, -0.948), Vec3::new(0.08, 0.988, -0.133), Vec3::new(0.957, -0.04, 0.289)],
+    axes: [Vec3::new(0.2804, -0.1755, -0.9437), Vec3::new(0.0797, 0.984, -0.1594), Vec3::new(0.9566, -0.0305, 0.2899)],
     scale: 1.0,
 };
 
 /// Slices of the face without its features: front depth over height.
-const FRONT: [[f32; 2]; 9] =
-    [[-10.4, 7.6], [-9.0, 8.4], [-7.3, 8.3], [-5.6, 8.85], [-3.5, 9.2], [-1.0, 8.9], [1.7, 8.8], [3.4, 9.35], [6.0, 9.2]];
+const FRONT: [[f32; 2]; 9] = [
+    [-10.4, 7.6],
+    [-9.0, 8.4],
+    [-7.3, 8.3],
+    [-5.6, 8.85],
+    [-3.5, 9.2],
+    [-1.0, 8.9],
+    [1.7, 8.8],
+    [3.4, 9.35],
+    [6.0, 9.2],
+];
 /// The same: half breadth over height.
 const SIDE: [[f32; 2]; 7] =
     [[-10.4, 3.9], [-9.0, 4.5], [-7.0, 5.3], [-4.5, 6.0], [-1.0, 6.65], [2.0, 6.75], [6.0, 6.6]];
@@ -30,18 +40,14 @@ fn distance(p: Vec3) -> f32 {
     let mut d = f32::MAX;
     if p.y > -16.0 {
         d = skull(p);
-        // Only what reaches here is worth its time: a blend changes nothing beyond its own reach.
-        let near = |d: f32, centre: Vec3, radius: f32| (p - centre).length() - radius < d.abs() + 2.0;
-        if near(d, at(0.0, -2.8, 8.0), 7.6) {
-            if near(d, at(3.2, 1.6, 7.6), 3.2) {
-                d = eye(d, p);
-            }
-            if near(d, at(0.0, -1.0, 9.6), 3.6) {
-                d = nose(d, p);
-            }
-            if near(d, at(0.0, -5.3, 7.2), 4.2) {
-                d = mouth(d, p);
-            }
+        if near(p, d, at(3.2, 1.6, 8.0), 3.9) {
+            d = eye(d, p);
+        }
+        if near(p, d, at(0.0, -1.0, 9.6), 3.6) {
+            d = nose(d, p);
+        }
+        if near(p, d, at(0.0, -5.3, 7.2), 4.2) {
+            d = mouth(d, p);
         }
     }
     if p.y - 3.0 < d + 2.0 {
@@ -62,9 +68,21 @@ fn skull(p: Vec3) -> f32 {
     let slice = squircle(p.x, p.z, curve(&SIDE, p.y), if p.z > 0.0 { curve(&FRONT, p.y) } else { curve(&BACK, p.y) });
     let face = meet(meet(slice, jaw, 1.4), p.y - 5.5, 3.0);
     d = join(d, face, 2.2);
-    d = join(d, ellipsoid(p, at(0.0, -8.75, 7.2), at(2.1, 1.3, 1.75)), 1.2);
-    d = join(d, ellipsoid(p, at(4.3, -0.4, 5.2), at(2.1, 1.7, 2.5)), 3.0);
-    carve(d, ellipsoid(p, at(8.9, 3.4, 5.0), at(1.5, 2.2, 2.4)), 2.0)
+    if near(p, d, at(0.0, -8.0, 5.0), 5.4) {
+        d = join(d, ellipsoid(p, at(0.0, -8.75, 7.2), at(2.1, 1.3, 1.75)), 1.2);
+        // The floor of the mouth, so that chin and neck meet in no sharp corner.
+        d = join(d, ellipsoid(p, at(0.0, -7.6, 3.6), at(3.4, 2.1, 4.2)), 1.6);
+    }
+    if near(p, d, at(4.3, -0.4, 5.2), 3.5) {
+        d = join(d, ellipsoid(p, at(4.3, -0.4, 5.2), at(2.1, 1.7, 2.5)), 3.0);
+    }
+    if near(p, d, at(3.0, -4.0, 4.5), 3.4) {
+        d = join(d, ellipsoid(p, at(3.0, -4.0, 4.5), at(2.3, 2.6, 2.6)), 2.8);
+    }
+    if near(p, d, at(8.9, 3.4, 5.0), 2.4) {
+        d = carve(d, ellipsoid(p, at(8.9, 3.4, 5.0), at(1.5, 2.2, 2.4)), 2.0);
+    }
+    d
 }
 
 /// Distance in a slice to a rounded square with half axes `w` and `l`: `a^4 + 1.5 a^2 b^2 + b^4 = 1`, to first order.
@@ -72,7 +90,8 @@ fn squircle(x: f32, z: f32, w: f32, l: f32) -> f32 {
     let (a, b) = (x / w, z / l);
     let (aa, bb) = (a * a, b * b);
     let norm = (aa * aa + 1.5 * aa * bb + bb * bb).max(1e-6).sqrt().sqrt();
-    let slope = Vec2::new(a * (4.0 * aa + 3.0 * bb) / w, b * (4.0 * bb + 3.0 * aa) / l).length() / (4.0 * norm * norm * norm);
+    let slope =
+        Vec2::new(a * (4.0 * aa + 3.0 * bb) / w, b * (4.0 * bb + 3.0 * aa) / l).length() / (4.0 * norm * norm * norm);
     (norm - 1.0) / slope.max(0.05)
 }
 
@@ -93,21 +112,22 @@ fn eye(d: f32, p: Vec3) -> f32 {
 fn nose(d: f32, p: Vec3) -> f32 {
     let mut d = join(d, tube(p, at(0.0, 1.9, 8.65), at(0.0, -1.9, 10.5), 0.5, 0.66), 0.9);
     d = join(d, ellipsoid(p, at(0.0, -1.5, 8.9), at(1.35, 2.2, 1.25)), 0.9);
-    d = join(d, sphere(p, at(0.0, -2.35, 10.75), 0.72), 0.8);
-    d = join(d, ellipsoid(p, at(1.06, -2.7, 9.75), at(0.55, 0.64, 1.1)), 0.9);
-    d = join(d, ellipsoid(p, at(0.0, -3.0, 10.1), at(0.36, 0.4, 0.8)), 0.4);
+    d = join(d, sphere(p, at(0.0, -2.2, 10.78), 0.68), 0.8);
+    d = join(d, ellipsoid(p, at(1.02, -2.7, 9.75), at(0.52, 0.62, 1.1)), 0.9);
+    d = join(d, ellipsoid(p, at(0.0, -3.0, 10.1), at(0.36, 0.42, 0.85)), 0.8);
     carve(d, ellipsoid(p, at(0.56, -3.45, 10.1), at(0.3, 0.42, 0.5)), 0.4)
 }
 
 /// Muzzle, philtrum and lips.
 fn mouth(d: f32, p: Vec3) -> f32 {
     let mut d = join(d, ellipsoid(p, at(0.0, -5.3, 6.9), at(3.4, 2.7, 2.15)), 2.2);
-    d = carve(d, tube(p, at(0.0, -3.9, 10.05), at(0.0, -4.6, 10.15), 0.1, 0.16), 0.6);
-    let upper = bent_tube::<4>(p, [at(0.0, -5.1, 9.62), at(1.3, -4.85, 9.6), at(2.65, -5.6, 8.6)], [0.36, 0.4, 0.14]);
-    let lower = bent_tube::<4>(p, [at(0.0, -6.08, 9.45), at(1.2, -6.2, 9.4), at(2.5, -5.72, 8.6)], [0.44, 0.44, 0.12]);
-    let line = bent_tube::<4>(p, [at(0.0, -5.58, 10.0), at(1.1, -5.42, 9.9), at(2.8, -5.72, 8.85)], [0.13, 0.13, 0.16]);
-    d = join(d, upper, 0.25);
-    d = join(d, lower, 0.25);
+    d = carve(d, tube(p, at(0.0, -4.0, 10.15), at(0.0, -4.7, 10.15), 0.12, 0.2), 1.0);
+    let upper = bent_tube::<4>(p, [at(0.0, -5.1, 9.56), at(1.2, -4.88, 9.52), at(2.55, -5.6, 8.5)], [0.36, 0.4, 0.14]);
+    let lower = bent_tube::<4>(p, [at(0.0, -6.08, 9.36), at(1.1, -6.2, 9.3), at(2.4, -5.72, 8.5)], [0.45, 0.44, 0.12]);
+    let line =
+        bent_tube::<4>(p, [at(0.0, -5.58, 9.95), at(1.1, -5.44, 9.85), at(2.75, -5.72, 8.8)], [0.13, 0.13, 0.16]);
+    d = join(d, upper, 0.5);
+    d = join(d, lower, 0.45);
     carve(d, line, 0.25)
 }
 
@@ -120,8 +140,8 @@ fn trunk(d: f32, p: Vec3) -> f32 {
     }
     let slope = tube(at(p.x, p.y, p.z * 0.7), at(0.5, -12.2, -2.4), at(11.5, -18.8, -2.2), 2.0, 1.5);
     d = join(d, slope, 3.5);
-    d = join(d, ellipsoid(p, at(0.0, -24.2, -2.8), at(16.6, 7.6, 7.8)), 5.0);
-    d = join(d, tube(p, at(1.4, -17.9, 2.0), at(11.0, -17.9, -1.2), 0.45, 0.6), 1.8);
+    d = join(d, ellipsoid(p, at(0.0, -22.6, -2.8), at(16.2, 6.4, 7.6)), 5.0);
+    d = join(d, tube(p, at(1.3, -17.5, 2.3), at(11.0, -17.5, -0.9), 0.5, 0.6), 1.5);
     meet(d, -24.0 - p.y, 2.4)
 }
 
@@ -139,7 +159,7 @@ fn zone(p: Vec3) -> Zone {
         Zone::Ear
     } else if p.y * 0.86 + p.z * 0.5 < -5.6 || (p.z < -2.0 && p.y < -4.0 + 0.3 * (p.z + 2.0)) {
         Zone::Neck
-    } else if p.z > 1.0 && p.y < 8.5 - 0.12 * p.x * p.x + 0.0 * p.z {
+    } else if p.z > 1.0 && p.y < 8.5 - 0.12 * p.x * p.x {
         Zone::Face
     } else {
         Zone::Head
@@ -170,7 +190,6 @@ const RINGS: [Ring; 15] = [
 
 /// The form of the adult.
 pub fn form() -> Form {
-    let at = Vec3::new;
     Form {
         distance,
         edge,

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::field::{bent_tube, carve, ellipse, ellipsoid, join, meet, sphere, tube};
+use super::field::{bent_tube, carve, ellipse, ellipsoid, join, meet, sphere};
 
 /// Where an ear sits and how large it is.
 pub struct Ear {
@@ -18,7 +18,8 @@ impl Ear {
     /// Distance to the ear joined with what is behind it.
     pub fn join_to(&self, head: f32, p: Vec3) -> f32 {
         let q = (p - self.centre) / self.scale;
-        if q.length_squared() > 5.2 * 5.2 {
+        // Nothing of the ear is further than 3.4 from its centre, and no blend below reaches further than 1.6.
+        if q.length() > 3.4 + 1.7 + (head / self.scale).abs() {
             return head;
         }
         let e = Vec3::new(q.dot(self.axes[0]), q.dot(self.axes[1]), q.dot(self.axes[2]));
@@ -61,7 +62,6 @@ impl Ear {
         d = join(d, sphere(e, Vec3::new(-0.05, -1.5, 0.05), 0.3), 0.4);
         // Lobe.
         let lobe = ellipsoid(e, Vec3::new(-0.42, -2.2, -0.22), Vec3::new(0.85, 0.95, 0.4));
-        let _ = tube;
         join(d, lobe, 0.4)
     }
 }

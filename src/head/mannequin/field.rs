@@ -21,6 +21,12 @@ pub fn carve(a: f32, b: f32, k: f32) -> f32 {
     meet(a, -b, k)
 }
 
+/// Whether a feature may change a field of value `d` at `p`. The ball is drawn so large that no blend of the feature
+/// reaches more than 2 cm beyond it; where this is false, the feature changes nothing and need not be computed.
+pub fn near(p: Vec3, d: f32, centre: Vec3, radius: f32) -> bool {
+    (p - centre).length_squared() < (radius + 2.0 + d.abs()) * (radius + 2.0 + d.abs())
+}
+
 /// Distance to an ellipsoid: exact on the surface and to first order around it.
 pub fn ellipsoid(p: Vec3, centre: Vec3, radii: Vec3) -> f32 {
     let q = p - centre;
@@ -60,11 +66,6 @@ pub fn ellipse(q: Vec2, radii: Vec2) -> f32 {
     let k0 = (q / radii).length();
     let k1 = (q / (radii * radii)).length();
     if k1 < 1e-9 { -radii.min_element() } else { k0 * (k0 - 1.0) / k1 }
-}
-
-/// `|x|` with its kink at 0 rounded off over about `k` cm, so mirrored forms pass the middle smoothly.
-pub fn soft_abs(x: f32, k: f32) -> f32 {
-    (x * x + k * k).sqrt() - k * 0.2
 }
 
 /// A smooth curve through `(x, y)` knots with ascending `x` (Catmull-Rom slopes), constant beyond the ends.

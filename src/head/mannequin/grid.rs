@@ -247,30 +247,36 @@ pub fn assemble(form: &Form, half: &Half, positions: &[Vec3]) -> Mesh {
     }
 
     let mut mesh = Mesh::default();
-    let mut known: BTreeMap<(u32, u32, bool), u32> = BTreeMap::new();
+    // For every vertex of the half: under which u it is known, and as which vertex on the left and on the right.
+    let mut known: Vec<Vec<(u32, [Option<u32>; 2])>> = vec![vec![]; positions.len()];
     let mut zones: BTreeMap<&'static str, Vec<u32>> = BTreeMap::new();
-    for mirrored in [false, true] {
+    for side in [0, 1] {
         for triangle in &corners {
             let mut out = triangle.map(|c| {
+                let (vertex, u) = (c.vertex as usize, c.uv.x.to_bits());
+                let entry = known[vertex].iter().position(|k| k.0 == u).unwrap_or_else(|| {
+                    known[vertex].push((u, [None; 2]));
+                    known[vertex].len() - 1
+                });
                 // Left and right share the vertices of the middle, except where the texture has its seam.
-                let shared = half.middle[c.vertex as usize] && c.uv.x == 0.5;
-                *known.entry((c.vertex, c.uv.x.to_bits(), mirrored && !shared)).or_insert_with(|| {
-                    let p = positions[c.vertex as usize];
-                    let flip = mirrored && !half.middle[c.vertex as usize];
+                let shared = half.middle[vertex] && c.uv.x == 0.5;
+                *known[vertex][entry].1[if shared { 0 } else { side }].get_or_insert_with(|| {
+                    let p = positions[vertex];
+                    let flip = side == 1 && !half.middle[vertex];
                     mesh.positions.push(if flip { Vec3::new(-p.x, p.y, p.z) } else { p });
-                    mesh.uvs.push(Vec2::new(if mirrored { 1.0 - c.uv.x } else { c.uv.x }, c.uv.y));
+                    mesh.uvs.push(Vec2::new(if side == 1 { 1.0 - c.uv.x } else { c.uv.x }, c.uv.y));
                     (mesh.positions.len() - 1) as u32
                 })
             });
-            if mirrored {
+            if side == 1 {
                 out.swap(1, 2);
             }
             let centre = triangle.iter().map(|c| positions[c.vertex as usize]).sum::<Vec3>() / 3.0;
-            let name = match ((form.zone)(centre), mirrored) {
+            let name = match ((form.zone)(centre), side) {
                 (Zone::Head, _) => "head",
                 (Zone::Face, _) => "face",
-                (Zone::Ear, false) => "ear_left",
-                (Zone::Ear, true) => "ear_right",
+                (Zone::Ear, 0) => "ear_left",
+                (Zone::Ear, _) => "ear_right",
                 (Zone::Neck, _) => "neck",
                 (Zone::Shoulders, _) => "shoulders",
             };
@@ -280,13 +286,18 @@ pub fn assemble(form: &Form, half: &Half, positions: &[Vec3]) -> Mesh {
     }
     mesh.groups = zones.into_iter().map(|(name, triangles)| Group { name: name.into(), triangles }).collect();
     mesh.compute_normals();
-    for (&(vertex, u, mirrored), &to) in &known {
-        let n = mesh.normals[to as usize];
-        if half.middle[vertex as usize] {
-            mesh.normals[to as usize] = Vec3::new(0.0, n.y, n.z).try_normalize().unwrap_or(Vec3::Y);
-        } else if mirrored {
-            let n = mesh.normals[known[&(vertex, u, false)] as usize];
-            mesh.normals[to as usize] = Vec3::new(-n.x, n.y, n.z);
+    // Sums differ in their last bits between the sides: the left one is mirrored.
+    for (vertex, known) in known.iter().enumerate() {
+        for &(_, sides) in known {
+            let Some(left) = sides[0] else { continue };
+            let n = mesh.normals[left as usize];
+            let flat = Vec3::new(0.0, n.y, n.z).try_normalize().unwrap_or(Vec3::Y);
+            if half.middle[vertex] {
+                mesh.normals[left as usize] = flat;
+            }
+            if let Some(right) = sides[1] {
+                mesh.normals[right as usize] = if half.middle[vertex] { flat } else { Vec3::new(-n.x, n.y, n.z) };
+            }
         }
     }
     mesh

@@ -13,7 +13,7 @@ fn bits(p: Vec3) -> [u32; 3] {
     (p + Vec3::ZERO).to_array().map(f32::to_bits)
 }
 
-/// Distance from a point to a triangle, brute force over a fine barycentric walk and a refinement.
+/// Distance from a point to a triangle: to its plane above the inside, else to the nearest edge.
 fn distance_to_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> f32 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let n = ab.cross(ac);
@@ -118,13 +118,13 @@ fn triangles_are_well_shaped() {
             let angle = (0..3)
                 .map(|k| (p[(k + 1) % 3] - p[k]).angle_between(p[(k + 2) % 3] - p[k]).to_degrees())
                 .fold(180.0, f32::min);
-            assert!(area > 2e-4 && angle > 0.3, "{style:?}: area {area}, angle {angle} at {}", p[0]);
+            assert!(area > 4e-3 && angle > 4.0, "{style:?}: area {area}, angle {angle} at {}", p[0]);
             sharp += usize::from(angle < 15.0);
             let normal: Vec3 = mesh.triangles[t].iter().map(|&v| mesh.normals[v as usize]).sum();
             folded += usize::from(mesh.area_vector(t).dot(normal) <= 0.0);
         }
-        assert!(sharp * 100 < mesh.triangles.len() * 6, "{style:?}: {sharp} triangles sharper than 15 degrees");
-        assert!(folded <= 4, "{style:?}: {folded} triangles against their normals");
+        assert!(sharp * 100 < mesh.triangles.len() * 5, "{style:?}: {sharp} triangles sharper than 15 degrees");
+        assert_eq!(folded, 0, "{style:?}: triangles against their normals");
     }
 }
 
@@ -168,6 +168,36 @@ fn normals_are_unit_and_face_outward_at_the_extremes() {
 }
 
 #[test]
+fn fields_have_no_jumps() {
+    for style in STYLES {
+        let form = form(style);
+        let mesh = mesh(style);
+        for (i, (&p, &n)) in mesh.positions.iter().zip(&mesh.normals).enumerate().filter(|(_, (p, _))| p.x >= 0.0) {
+            // Along a line through the surface, slanted differently at every vertex.
+            let slant = (i as f32 * 0.618).fract();
+            let along = n.any_orthonormal_vector() * slant + n * (1.0 - slant);
+            for k in -40..40 {
+                let [mut a, mut b] = [k, k + 1].map(|k| p + along * (k as f32 * 0.05));
+                if a.x < 0.0 || b.x < 0.0 {
+                    continue;
+                }
+                // A steep place is none: a jump stays when it is looked at closely.
+                let change = |a, b| ((form.distance)(a) - (form.distance)(b)).abs();
+                while change(a, b) > 2.0 * a.distance(b) && a.distance(b) > 1e-3 {
+                    let middle = (a + b) / 2.0;
+                    (a, b) = if change(a, middle) > change(middle, b) { (a, middle) } else { (middle, b) };
+                }
+                assert!(
+                    change(a, b) < (2.0 * a.distance(b)).max(0.02),
+                    "{style:?}: from {a} to {b} by {}",
+                    change(a, b)
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn landmarks_lie_on_the_surface() {
     for style in STYLES {
         let mesh = mesh(style);
@@ -202,7 +232,7 @@ fn landmarks_stand_as_on_a_head() {
 fn the_adult_has_the_measures_of_an_adult() {
     let mesh = mesh(Style::Adult);
     let height = mark(Style::Adult, "vertex").y - mark(Style::Adult, "chin").y;
-    assert!((height - 23.0).abs() < 0.25, "chin to vertex {height}");
+    assert!((height - 23.0).abs() < 0.1, "chin to vertex {height}");
     let skull: Vec<Vec3> = mesh.positions.iter().copied().filter(|p| p.y > 4.5).collect();
     let breadth = 2.0 * skull.iter().map(|p| p.x).fold(0.0, f32::max);
     assert!((breadth - 15.5).abs() < 0.4, "breadth {breadth}");

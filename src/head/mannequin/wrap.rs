@@ -9,11 +9,11 @@ use super::grid::Half;
 /// How far from the surface the wrapping begins, in cm: there the level set has hardly an ear or a nose.
 const START: f32 = 1.2;
 /// Rounds in which the grid closes in on the surface.
-const CLOSING: usize = 12;
+const CLOSING: usize = 10;
 /// Rounds on the surface itself.
-const RESTING: usize = 36;
-/// On the surface the direction to it is sought anew every so many rounds.
-const REFRESH: usize = 3;
+const RESTING: usize = 26;
+/// On the surface the direction to it is sought anew every so many rounds; on the way every other round.
+const REFRESH: usize = 4;
 /// Half edge of the tetrahedron of samples, in cm.
 const PROBE: f32 = 0.03;
 
@@ -36,11 +36,12 @@ fn mirrored(p: Vec3) -> Vec3 {
     Vec3::new(p.x.abs(), p.y, p.z)
 }
 
-/// A vertex on its way: its place, and the step that one unit of the field's value asks for there.
+/// A vertex on its way: its place, the step that one unit of the field's value asks for, and the edge wanted there.
 #[derive(Clone, Copy)]
 struct Traveller {
     p: Vec3,
     step: Vec3,
+    edge: f32,
 }
 
 impl Traveller {
@@ -48,7 +49,7 @@ impl Traveller {
     fn approach(self, distance: fn(Vec3) -> f32, level: f32, limit: f32) -> Self {
         let (value, normal, slope) = probe(distance, self.p);
         let step = normal / slope.max(0.3);
-        Self { p: self.p - (step * (value - level)).clamp_length_max(limit), step }
+        Self { p: self.p - (step * (value - level)).clamp_length_max(limit), step, ..self }
     }
 
     /// The same with the direction of the last step.
@@ -74,10 +75,13 @@ pub fn wrap(form: &Form, half: &Half) -> Vec<Vec3> {
         .par_iter()
         .enumerate()
         .map(|(v, &p)| {
-            let mut start = Traveller { p, step: Vec3::Y };
+            let mut start = Traveller { p, step: Vec3::Y, edge: 1.0 };
             // Out of the form by the straight way: from inside the nose the field would lead into the face.
             for _ in 0..8 {
                 let d = (form.distance)(mirrored(start.p));
+                if d >= START {
+                    break;
+                }
                 start.p += half.outward[v] * (START - d).clamp(0.0, 1.0);
             }
             (0..3).fold(start, |t, _| t.approach(form.distance, START, 2.0).settle(half.middle[v]))
@@ -86,7 +90,7 @@ pub fn wrap(form: &Form, half: &Half) -> Vec<Vec3> {
     let rounds = CLOSING + RESTING;
     for round in 0..rounds {
         let level = START * (CLOSING as f32 - 1.0 - round as f32).max(0.0) / CLOSING as f32;
-        let fresh = round < CLOSING || round % REFRESH == 0;
+        let fresh = round % if round < CLOSING { 2 } else { REFRESH } == 0;
         let landings = if round + 1 == rounds { 2 } else { 0 };
         travellers = (0..travellers.len())
             .into_par_iter()
@@ -94,10 +98,11 @@ pub fn wrap(form: &Form, half: &Half) -> Vec<Vec3> {
             .map(|v| {
                 let mut t = travellers[v];
                 // Only along the surface: a pull inward would draw the grid through thin parts.
-                let (pull, normal) = (pull(form, half, &travellers, v), t.step.normalize_or_zero());
+                let (pull, normal) = (pull(half, &travellers, v), t.step.normalize_or_zero());
                 t.p += (pull - normal * pull.dot(normal)) * 0.8;
                 t = t.settle(half.middle[v]);
                 t = if fresh {
+                    t.edge = (form.edge)(t.p);
                     t.approach(form.distance, level, 0.5)
                 } else {
                     t.approach_again(form.distance, level, 0.3)
@@ -111,13 +116,13 @@ pub fn wrap(form: &Form, half: &Half) -> Vec<Vec3> {
 }
 
 /// Where the neighbours of a vertex draw it: each the more, the shorter edges should be there.
-fn pull(form: &Form, half: &Half, travellers: &[Traveller], v: usize) -> Vec3 {
-    let p = travellers[v].p;
+fn pull(half: &Half, travellers: &[Traveller], v: usize) -> Vec3 {
+    let Traveller { p, edge, .. } = travellers[v];
     let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
     for &w in &half.neighbours[v] {
-        let q = travellers[w as usize].p;
-        let weight = 1.0 / (form.edge)(mirrored((p + q) * 0.5));
-        sum += (q - p) * weight;
+        let other = &travellers[w as usize];
+        let weight = 1.0 / (edge + other.edge);
+        sum += (other.p - p) * weight;
         weights += weight;
     }
     sum / weights

@@ -19,7 +19,8 @@ pub fn functions() -> Vec<Entry> {
 /// A material.
 pub fn noun() -> Noun {
     Noun::of::<HairMaterial>("How hair looks; made by `coif.material.hair`.", vec![], vec![], |h| {
-        h.get::<HairMaterial>().map_or_else(String::new, |m| format!("hair material {} to {}", m.root_colour, m.tip_colour))
+        h.get::<HairMaterial>()
+            .map_or_else(String::new, |m| format!("hair material {} to {}", m.root_colour, m.tip_colour))
     })
 }
 

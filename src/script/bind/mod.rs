@@ -4,9 +4,16 @@
 //! its arguments strictly, calls the core, and gives the core's errors a place. This file is the table of contents.
 
 mod constants;
+mod domain;
+mod guides;
+mod head;
 mod material;
+mod overlay;
 mod params;
+mod picture;
+mod region;
 mod scene;
+mod strands;
 
 use mlua::Lua;
 
@@ -15,17 +22,31 @@ use super::convert::to_lua;
 use super::registry::{Registry, registry as language};
 use super::session::session;
 use super::strict;
+use crate::params::{Table, Value};
 
 pub use params::Parameter;
 pub use scene::scene_of;
 
 /// The whole language.
 pub fn registry() -> Registry {
+    let functions =
+        [params::functions(), head::functions(), domain::functions(), material::functions(), scene::functions()];
+    let nouns = [
+        head::nouns(),
+        vec![region::noun(), guides::noun(), strands::noun()],
+        domain::nouns(),
+        vec![material::noun(), scene::noun()],
+    ];
     Registry {
-        functions: [params::functions(), material::functions(), scene::functions()].into_iter().flatten().collect(),
-        nouns: vec![material::noun(), scene::noun()],
+        functions: functions.into_iter().flatten().collect(),
+        nouns: nouns.into_iter().flatten().collect(),
         constants: constants::constants(),
     }
+}
+
+/// A list as a value.
+fn list(items: impl IntoIterator<Item = Value>) -> Value {
+    Value::Table(Table { items: items.into_iter().collect(), ..Table::default() })
 }
 
 /// Makes the global `coif` from the registry.

@@ -157,8 +157,7 @@ fn set(parameter: Parameter, text: Option<&String>) -> std::result::Result<Param
         ParameterKind::Boolean => text.trim().parse().ok().map(Value::Bool),
         ParameterKind::Text | ParameterKind::Choice | ParameterKind::Colour => Some(Value::Text(text.clone())),
         ParameterKind::Point => {
-            let items: Vec<Value> =
-                text.split(',').filter_map(|n| n.trim().parse().ok()).map(Value::Number).collect();
+            let items: Vec<Value> = text.split(',').filter_map(|n| n.trim().parse().ok()).map(Value::Number).collect();
             Some(Value::Table(Table { items, ..Table::default() }))
         }
     };

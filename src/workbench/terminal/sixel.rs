@@ -51,7 +51,8 @@ pub fn encode(pixels: &Pixels) -> Vec<u8> {
 
 /// The palette's colour nearest to a colour, dithered by 0..=15.
 fn index(rgb: [u8; 3], dither: i32) -> u8 {
-    let [r, g, b] = rgb.map(|c| ((i32::from(c) * (STEPS - 1) * 16 + (dither * 2 + 1) * 255 / 2) / (255 * 16)).min(STEPS - 1));
+    let [r, g, b] =
+        rgb.map(|c| ((i32::from(c) * (STEPS - 1) * 16 + (dither * 2 + 1) * 255 / 2) / (255 * 16)).min(STEPS - 1));
     ((r * STEPS + g) * STEPS + b) as u8
 }
 

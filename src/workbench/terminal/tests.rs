@@ -2,7 +2,8 @@ use super::*;
 use crate::render::{Picture, Speed, png as coder};
 
 fn picture(width: u32, height: u32, colour: impl Fn(u32, u32) -> [u8; 3]) -> (Pixels, Vec<u8>) {
-    let rgb: Vec<[u8; 3]> = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| colour(x, y)).collect();
+    let rgb: Vec<[u8; 3]> =
+        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| colour(x, y)).collect();
     let picture = Picture { width, height, pixels: rgb.as_flattened().to_vec() };
     (Pixels { width, height, rgb }, coder::encode(&picture, Speed::Fast).unwrap())
 }

@@ -227,7 +227,12 @@ impl State {
         self.changed.extend(changed);
     }
 
-    fn wait<E>(&mut self, until: Option<Duration>, receiver: &Receiver<Message<E>>, notice: &mut impl FnMut(Notice<E>)) {
+    fn wait<E>(
+        &mut self,
+        until: Option<Duration>,
+        receiver: &Receiver<Message<E>>,
+        notice: &mut impl FnMut(Notice<E>),
+    ) {
         let mut left = until.map(|u| u.saturating_sub(self.now()));
         if self.ears.is_none() {
             let look = POLL.saturating_sub(self.looked.elapsed());

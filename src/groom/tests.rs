@@ -1,1 +1,0 @@
-//! Laws of growing, deforming and filling.

@@ -1,0 +1,345 @@
+//! Heads: `coif.head` and its methods.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::super::call::{Call, Result};
+use super::super::registry::{Entry, Getter, Noun};
+use super::region::Area;
+use crate::geometry::OrientedBox;
+use crate::head::load::{self, Axis, FileBytes, LoadError, LoadOptions, Unit};
+use crate::head::mannequin::{self, Style};
+use crate::head::{Head, HeadError, Landmarks, Parting, Region};
+use crate::params::{Angle, Handle, Object, Table, Value};
+
+crate::params! {
+    /// The head that hair grows on: the built-in mannequin, or a mesh from a file. `--head FILE` on the command line
+    /// takes the place of either.
+    pub struct HeadFields("coif.head") {
+        /// Which mannequin.
+        style: Style = Style::Adult;
+        /// A mesh instead of the mannequin: OBJ, glTF or GLB, beside the script or below its folder.
+        file: Option<String>;
+        /// What one unit of the file is; metres for glTF, centimetres for OBJ when left out.
+        unit: Option<Unit>;
+        /// The axis of the file that points up; "y" when left out.
+        up: Option<Axis>;
+        /// The axis of the file that the face looks along; "z", or "-y" when z is up.
+        forward: Option<Axis>;
+        /// Only these groups, objects or materials of the file; everything when left out.
+        groups: Vec<String> = vec![];
+        /// Landmarks by name, in the file's own axes and unit, instead of those found from the shape.
+        landmarks: Value = Value::Table(Table::default());
+    }
+}
+
+crate::params! {
+    /// A landmark plus an offset in cm (to the head's left, up, to the front) that grows with the head.
+    pub struct AtFields("Head:at") {
+        /// `vertex`, `forehead`, `left_temple`, `right_temple`, `left_ear`, `right_ear`, `occiput`, `nape`, `chin`.
+        landmark: String;
+        /// From there, for an adult's head.
+        offset: Vec3 = Vec3::ZERO, unit("cm");
+    }
+}
+
+crate::params! {
+    /// A half of the space about the head, or all of it, as a box.
+    pub struct BoxFields("Head:box") {
+        /// `all`, `behind`, `front`, `left`, `right`, `above`, `below` the ears.
+        name: String;
+    }
+}
+
+crate::params! {
+    /// A place over the skin, in a direction from the middle of the skull.
+    pub struct PointFields("Head:point") {
+        /// From the face towards the head's left: 90 is the left ear, 180 the back.
+        azimuth: Angle = Angle::degrees(0.0), range(-360.0, 360.0);
+        /// Upwards: 90 is the top.
+        elevation: Angle = Angle::degrees(0.0), range(-90.0, 90.0);
+        /// Over the skin, for an adult's head.
+        height: f32 = 0.0, unit("cm"), range(-20.0, 200.0);
+    }
+}
+
+crate::params! {
+    /// The place of the skin that is nearest to a point.
+    pub struct SkinFields("Head:skin") {
+        /// Any point.
+        point: Vec3, unit("cm");
+    }
+}
+
+crate::params! {
+    /// A region that a closed curve on the head encloses.
+    pub struct RegionFields("Head:region") {
+        /// Points of the curve, in order, three or more; they are laid on the head.
+        points: Vec<Vec3>, positional();
+        /// False for straight edges.
+        smooth: bool = true;
+    }
+}
+
+crate::params! {
+    /// A group, an object or a material of the head's file, as a region.
+    pub struct GroupFields("Head:group") {
+        /// Its name.
+        name: String;
+    }
+}
+
+crate::params! {
+    /// A region from a picture over the head's texture coordinates: white grows hair, black none, grey less.
+    pub struct MaskFields("Head:mask") {
+        /// A PNG file, beside the script or below its folder.
+        file: String;
+    }
+}
+
+crate::params! {
+    /// A parting: a line on the scalp that strands never blend across. Lay it through a region by `Region:parting`.
+    pub struct PartingFields("Head:parting") {
+        /// Points of the line, in order, two or more; they are laid on the skin.
+        points: Vec<Vec3>, positional();
+    }
+}
+
+crate::params! {
+    /// Tells the side of a parting: 1 on the head's left of a parting that runs from the forehead backward, -1 on its
+    /// right, 0 on it.
+    pub struct SideFields("Parting:side") {
+        /// Any point.
+        point: Vec3, unit("cm");
+    }
+}
+
+/// `coif.head`.
+pub fn functions() -> Vec<Entry> {
+    vec![Entry::table::<HeadFields>("coif.head", "Head", head)]
+}
+
+/// Heads and partings.
+pub fn nouns() -> Vec<Noun> {
+    let methods = vec![
+        Entry::positional::<AtFields>("Head:at", "vector", at),
+        Entry::positional::<BoxFields>("Head:box", "Box", box_named),
+        Entry::table::<PointFields>("Head:point", "vector", point),
+        Entry::positional::<SkinFields>("Head:skin", "vector", skin),
+        Entry::positional::<SkinFields>("Head:normal", "vector", normal)
+            .about("The direction straight out of the skin, at the place nearest to a point."),
+        Entry::plain("Head:scalp", "The natural scalp: where hair grows on a person.", "Region", scalp),
+        Entry::table::<RegionFields>("Head:region", "Region", region),
+        Entry::positional::<GroupFields>("Head:group", "Region", group),
+        Entry::positional::<MaskFields>("Head:mask", "Region", mask),
+        Entry::table::<PartingFields>("Head:parting", "Parting", parting),
+    ];
+    let getters = vec![
+        Getter {
+            name: "scale",
+            doc: "Height from chin to vertex over an adult's 23 cm; offsets are multiplied by it.",
+            returns: "number",
+            get: |h| h.get::<Head>().map_or(Value::Nil, |h| Value::Number(f64::from(h.scale))),
+        },
+        Getter {
+            name: "name",
+            doc: "What it is called: `mannequin`, or its file.",
+            returns: "string",
+            get: |h| h.get::<Head>().map_or(Value::Nil, |h| Value::Text(h.name.clone())),
+        },
+        Getter {
+            name: "centre",
+            doc: "The middle of the skull.",
+            returns: "vector",
+            get: |h| h.get::<Head>().map_or(Value::Nil, |h| Value::Vector(h.centre())),
+        },
+    ];
+    let text = |h: &Handle| {
+        h.get::<Head>().map_or_else(String::new, |h| format!("head {}, {} triangles", h.name, h.mesh.triangles.len()))
+    };
+    let head = Noun::of::<Head>(
+        "A head in head space: its origin lies between the ears, x points to its left, y up, z to the front, in cm.",
+        methods,
+        getters,
+        text,
+    );
+    let side = vec![Entry::positional::<SideFields>("Parting:side", "number", side)];
+    let text = |h: &Handle| {
+        h.get::<Parting>().map_or_else(String::new, |p| format!("parting of {} points", p.curtain.line().len()))
+    };
+    vec![head, Noun::of::<Parting>("A line on the scalp that strands never blend across.", side, vec![], text)]
+}
+
+/// Any object as a value.
+pub fn give<T: Object>(value: T) -> Value {
+    Value::Handle(Handle::new(Arc::new(value)))
+}
+
+fn head(call: &Call) -> Result<Value> {
+    let fields: HeadFields = call.read()?;
+    // The same head for the same words: parts of a style share what is computed for it.
+    let key = format!("{:?} {fields:?}", call.session.options.head);
+    if let Some(head) = call.session.heads.borrow().get(&key) {
+        return Ok(Value::Handle(Handle::new(Arc::clone(head))));
+    }
+    let head = Arc::new(match (&call.session.options.head, &fields.file) {
+        (Some(path), _) => {
+            let options = LoadOptions { unit: call.session.options.head_unit, ..LoadOptions::default() };
+            from_file(call, path, "", &options, &BTreeMap::new())?
+        }
+        (None, Some(file)) => {
+            let options = LoadOptions {
+                unit: fields.unit,
+                up: fields.up,
+                forward: fields.forward,
+                groups: fields.groups.clone(),
+            };
+            from_file(call, &call.session.options.folder().join(file), "file", &options, &landmarks(call, &fields)?)?
+        }
+        (None, None) => {
+            let lone = [
+                ("unit", fields.unit.is_some()),
+                ("up", fields.up.is_some()),
+                ("forward", fields.forward.is_some()),
+                ("groups", !fields.groups.is_empty()),
+                ("landmarks", !landmarks(call, &fields)?.is_empty()),
+            ];
+            if let Some((name, _)) = lone.iter().find(|(_, is_given)| *is_given) {
+                let hint = "name the file: `file = \"anna.glb\"`".to_owned();
+                return Err(call.problem_at(name, format!("`{name}` is about a file, but there is none"), Some(hint)));
+            }
+            built_in(call, fields.style)?
+        }
+    });
+    call.session.heads.borrow_mut().insert(key, Arc::clone(&head));
+    Ok(Value::Handle(Handle::new(head)))
+}
+
+fn built_in(call: &Call, style: Style) -> Result<Head> {
+    let places = mannequin::landmarks(style);
+    let landmarks = places.iter().fold(Landmarks::from_all([Vec3::ZERO; 9]), |l, (name, p)| l.with(name, *p));
+    Head::with_landmarks(mannequin::mesh(style), "mannequin", landmarks).map_err(|e| head_error(call, "style", &e))
+}
+
+/// Loads a head; `path` is the field to blame.
+fn from_file(
+    call: &Call,
+    file: &Path,
+    path: &str,
+    options: &LoadOptions,
+    landmarks: &BTreeMap<String, Vec3>,
+) -> Result<Head> {
+    let bytes = call.session.access.read(file).map_err(|e| call.problem_at(path, e.to_string(), e.hint()))?;
+    let name = file.to_string_lossy();
+    let folder = file.parent().map(Path::to_path_buf).unwrap_or_default();
+    let siblings =
+        |name: &str| call.session.access.read(&folder.join(name)).map_err(|e| io::Error::other(e.to_string()));
+    let field = |e: &LoadError| match e {
+        LoadError::UnknownGroup { .. } => "groups",
+        LoadError::Axes { .. } => "forward",
+        _ => path,
+    };
+    let failed = |e: LoadError| call.problem_at(field(&e), format!("`{name}`: {e}"), e.hint());
+    let loaded = load::load(&FileBytes { name: &name, bytes: &bytes }, options, &siblings).map_err(failed)?;
+    let loaded = call.warned(loaded);
+    load::check_head_size(loaded.mesh.bounds(), loaded.unit).map_err(failed)?;
+    let landmarks = landmarks.iter().map(|(name, &p)| (name.clone(), loaded.from_file * p)).collect();
+    let stem = file.file_stem().map_or_else(|| "head".into(), |s| s.to_string_lossy().into_owned());
+    let head = Head::from_mesh(loaded.mesh, &stem, &landmarks).map_err(|e| head_error(call, path, &e))?;
+    Ok(call.warned(head))
+}
+
+/// The `landmarks` field: a table of points by name.
+fn landmarks(call: &Call, fields: &HeadFields) -> Result<BTreeMap<String, Vec3>> {
+    let Value::Table(table) = &fields.landmarks else {
+        return Err(call.problem_at(
+            "landmarks",
+            format!("expected a table, got {}", fields.landmarks.type_name()),
+            None,
+        ));
+    };
+    let mut reader = crate::params::Reader::default();
+    let mut out = BTreeMap::new();
+    for (name, value) in &table.fields {
+        let path = format!("landmarks.{name}");
+        if let Some(p) = reader.inside(path, |r| <Vec3 as crate::params::FieldType>::read(value, r)) {
+            out.insert(name.clone(), p);
+        }
+    }
+    let problems = reader.problems();
+    if problems.is_empty() { Ok(out) } else { Err(call.problems(problems)) }
+}
+
+/// An error about a head, blamed on a field.
+fn head_error(call: &Call, path: &str, error: &HeadError) -> super::super::session::Raised {
+    call.problem_at(path, error.to_string(), error.hint())
+}
+
+fn at(call: &Call) -> Result<Value> {
+    let (head, fields) = (call.this::<Head>()?, call.read::<AtFields>()?);
+    let place = head.at(&fields.landmark, fields.offset).map_err(|e| head_error(call, "landmark", &e))?;
+    Ok(Value::Vector(place))
+}
+
+fn box_named(call: &Call) -> Result<Value> {
+    let (head, fields) = (call.this::<Head>()?, call.read::<BoxFields>()?);
+    let named: OrientedBox = head.box_named(&fields.name).map_err(|e| head_error(call, "name", &e))?;
+    Ok(give(named))
+}
+
+fn point(call: &Call) -> Result<Value> {
+    let (head, fields) = (call.this::<Head>()?, call.read::<PointFields>()?);
+    Ok(Value::Vector(head.point(fields.azimuth.radians, fields.elevation.radians, fields.height)))
+}
+
+fn skin(call: &Call) -> Result<Value> {
+    let (head, fields) = (call.this::<Head>()?, call.read::<SkinFields>()?);
+    Ok(Value::Vector(head.closest(fields.point).position))
+}
+
+fn normal(call: &Call) -> Result<Value> {
+    let (head, fields) = (call.this::<Head>()?, call.read::<SkinFields>()?);
+    Ok(Value::Vector(head.root(&head.closest(fields.point)).normal))
+}
+
+fn scalp(call: &Call) -> Result<Value> {
+    let head = call.this::<Head>()?;
+    Ok(give(Area::new(Arc::clone(&head), head.scalp())))
+}
+
+fn region(call: &Call) -> Result<Value> {
+    let (head, fields) = (call.this::<Head>()?, call.read::<RegionFields>()?);
+    let region = Region::polygon(&head, &fields.points, fields.smooth);
+    Ok(give(Area::new(Arc::clone(&head), region.map_err(|e| call.problem(e.to_string(), e.hint()))?)))
+}
+
+fn group(call: &Call) -> Result<Value> {
+    let (head, fields) = (call.this::<Head>()?, call.read::<GroupFields>()?);
+    let region = Region::group(&head, &fields.name);
+    Ok(give(Area::new(Arc::clone(&head), region.map_err(|e| call.problem_at("name", e.to_string(), e.hint()))?)))
+}
+
+fn mask(call: &Call) -> Result<Value> {
+    let (head, fields) = (call.this::<Head>()?, call.read::<MaskFields>()?);
+    let path: PathBuf = call.session.options.folder().join(&fields.file);
+    let bytes = call.session.access.read(&path).map_err(|e| call.problem_at("file", e.to_string(), e.hint()))?;
+    let mask = super::picture::grey(&bytes)
+        .map_err(|e| call.problem_at("file", format!("`{}` is not a PNG picture: {e}", fields.file), None))?;
+    let region = Region::mask(&head, Arc::new(mask));
+    Ok(give(Area::new(Arc::clone(&head), region.map_err(|e| call.problem(e.to_string(), e.hint()))?)))
+}
+
+fn parting(call: &Call) -> Result<Value> {
+    let (head, fields) = (call.this::<Head>()?, call.read::<PartingFields>()?);
+    let parting = Parting::new(&head, &fields.points).map_err(|e| call.problem(e.to_string(), None))?;
+    Ok(give(parting))
+}
+
+fn side(call: &Call) -> Result<Value> {
+    let (parting, fields) = (call.this::<Parting>()?, call.read::<SideFields>()?);
+    Ok(Value::Number(f64::from(parting.side(fields.point))))
+}

@@ -1,0 +1,96 @@
+//! What the debug view draws for the values of a script.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::region::Area;
+use crate::geometry::{OrientedBox, Root};
+use crate::groom::{Domain, Queue};
+use crate::math::Colour;
+use crate::render::overlay::stage_colour;
+use crate::scene::{Arrow, Line, Marker, Overlay, WireBox, WireSphere};
+
+/// Colour of partings.
+const PARTING: Colour = Colour::hex(0xe0_3c_31);
+/// Colour of natural domains, which are in no stage of the forces.
+const NATURAL: Colour = Colour::hex(0x9a_5b_c2);
+/// Colour of roots.
+const ROOT: Colour = Colour::hex(0x5a_5f_69);
+/// Length of arrows, cm.
+const ARROW: f32 = 4.0;
+
+/// The partings of a region.
+pub fn area(area: &Area) -> Overlay {
+    let line = |points: &[Vec3]| Line { points: points.to_vec(), colour: PARTING };
+    Overlay { lines: area.partings.iter().map(|p| line(p.curtain.line())).collect(), ..Overlay::default() }
+}
+
+/// Points where strands grow.
+pub fn roots(roots: &[Root]) -> Overlay {
+    let marker = |r: &Root| Marker { position: r.position, colour: ROOT, label: String::new() };
+    Overlay { markers: roots.iter().map(marker).collect(), ..Overlay::default() }
+}
+
+/// The domains of a queue, coloured as the guides that they bend; its first stage has number `before` + 1.
+pub fn queue(queue: &Queue, before: usize) -> Overlay {
+    let mut out = Overlay::default();
+    for (k, stage) in queue.stages().iter().enumerate() {
+        let colour = stage_colour(u8::try_from(before + k + 1).unwrap_or(u8::MAX));
+        for &index in &stage.domains {
+            let domain = &queue.domains()[index];
+            let label = label(domain, index);
+            match &**domain {
+                Domain::Directional(d) => {
+                    out.boxes.push(wire(&d.r#box, colour, label));
+                    out.arrows.push(Arrow { from: d.r#box.centre, to: d.r#box.centre + d.direction.0 * ARROW, colour });
+                }
+                Domain::Gather(g) => {
+                    out.spheres.push(WireSphere { centre: g.core, radius: g.core_radius, colour, label });
+                    if let Some(p) = g.direction {
+                        out.arrows.push(Arrow { from: g.core, to: g.core + p.0 * ARROW, colour });
+                    }
+                }
+                Domain::Natural(n) => out.boxes.push(wire(&n.region, colour, label)),
+            }
+        }
+    }
+    out
+}
+
+/// Natural domains.
+pub fn naturals(domains: &[Arc<Domain>]) -> Overlay {
+    let boxes = domains.iter().enumerate().filter_map(|(i, d)| Some(wire(d.region()?, NATURAL, label(d, i)))).collect();
+    Overlay { boxes, ..Overlay::default() }
+}
+
+/// Shrinks boxes that reach far beyond everything that is drawn: their sides would lie outside of every view.
+pub fn fit(overlay: &mut Overlay, around: crate::geometry::Bounds) {
+    if around.is_empty() {
+        return;
+    }
+    let near = around.grown(2.0);
+    for b in &mut overlay.boxes {
+        if b.axes != glam::Mat3::IDENTITY {
+            continue;
+        }
+        let (lo, hi) = ((b.centre - b.half).max(near.min), (b.centre + b.half).min(near.max));
+        if lo.cmplt(hi).all() {
+            (b.centre, b.half) = ((lo + hi) * 0.5, (hi - lo) * 0.5);
+        }
+    }
+    for arrow in &mut overlay.arrows {
+        if !near.contains(arrow.from) {
+            let moved = arrow.from.clamp(near.min, near.max);
+            (arrow.from, arrow.to) = (moved, arrow.to + (moved - arrow.from));
+        }
+    }
+}
+
+fn label(domain: &Domain, index: usize) -> String {
+    domain.name().map_or_else(|| format!("{} {}", domain.kind(), index + 1), ToOwned::to_owned)
+}
+
+fn wire(b: &OrientedBox, colour: Colour, label: String) -> WireBox {
+    WireBox { centre: b.centre, axes: b.axes, half: b.half, colour, label }
+}
