@@ -1,5 +1,9 @@
 //! The promises of watching, kept in a real folder with a stand-in for the run that counts.
 
+#[cfg(unix)]
+#[path = "watch/terminal.rs"]
+mod terminal;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -119,7 +119,7 @@ pub struct WatchArguments {
     #[arg(long)]
     pub poll: bool,
     /// Print one JSON object per event on standard output, and nothing else
-    #[arg(long, conflicts_with_all = ["stats", "show"])]
+    #[arg(long, conflicts_with = "show")]
     pub json: bool,
 }
 
