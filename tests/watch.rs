@@ -4,7 +4,6 @@
 #[path = "watch/terminal.rs"]
 mod terminal;
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -13,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use coif::script::{Disk, Files};
 use coif::task::Task;
-use coif::workbench::watch::{Notice, Stop, Watch, WatchOptions};
+use coif::workbench::watch::{Ended, Stop, Watch, WatchOptions};
 
 /// Longest wait for something that must happen.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -124,7 +123,7 @@ impl Bench {
     }
 }
 
-fn stand_in(tally: &Tally, task: &Task, files: &dyn Files) -> BTreeSet<PathBuf> {
+fn stand_in(tally: &Tally, task: &Task, files: &dyn Files) -> Ended {
     let run = tally.started.fetch_add(1, Ordering::SeqCst);
     let reads = tally.reads.lock().unwrap().clone();
     let read = |path: &PathBuf| files.read(path).map_or("-".to_owned(), |b| String::from_utf8(b).unwrap());
@@ -132,7 +131,8 @@ fn stand_in(tally: &Tally, task: &Task, files: &dyn Files) -> BTreeSet<PathBuf> 
     while tally.is_endless.load(Ordering::SeqCst) && !task.is_cancelled() {
         std::thread::sleep(Duration::from_millis(1));
     }
-    if task.is_cancelled() {
+    let is_cut_short = task.is_cancelled();
+    if is_cut_short {
         tally.cancelled.fetch_add(1, Ordering::SeqCst);
     } else {
         for path in tally.writes.lock().unwrap().iter() {
@@ -143,7 +143,7 @@ fn stand_in(tally: &Tally, task: &Task, files: &dyn Files) -> BTreeSet<PathBuf> 
         *tally.seen.lock().unwrap() = seen.join("|");
         tally.finished.fetch_add(1, Ordering::SeqCst);
     }
-    reads.into_iter().collect()
+    Ended { depends: reads.into_iter().collect(), is_cut_short }
 }
 
 #[test]

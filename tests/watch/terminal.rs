@@ -167,11 +167,8 @@ fn a_terminal_shows_the_picture() {
 fn piped(mut command: Command, is_stdout: bool) -> (Process, Receiver<String>) {
     let (out, err) = if is_stdout { (Stdio::piped(), Stdio::null()) } else { (Stdio::null(), Stdio::piped()) };
     let mut process = Process(command.stdin(Stdio::null()).stdout(out).stderr(err).spawn().unwrap());
-    let stream: Box<dyn Read + Send> = if is_stdout {
-        Box::new(process.0.stdout.take().unwrap())
-    } else {
-        Box::new(process.0.stderr.take().unwrap())
-    };
+    let stream: Box<dyn Read + Send> =
+        if is_stdout { Box::new(process.0.stdout.take().unwrap()) } else { Box::new(process.0.stderr.take().unwrap()) };
     let (sender, receiver) = channel();
     std::thread::spawn(move || {
         for line in BufReader::new(stream).lines().map_while(Result::ok) {
@@ -234,7 +231,10 @@ fn programs_get_one_object_per_event() {
     let event = expect("started", 2);
     assert!(event["changed"][0].as_str().unwrap().ends_with("style.lua"));
     let event = expect("failed", 2);
-    assert_eq!((event["diagnostics"][0]["line"].as_u64(), &event["diagnostics"][0]["severity"]), (Some(1), &"error".into()));
+    assert_eq!(
+        (event["diagnostics"][0]["line"].as_u64(), &event["diagnostics"][0]["severity"]),
+        (Some(1), &"error".into())
+    );
     assert_eq!(expect("stale", 2)["good_run"], 1);
 
     // A module that is not there yet, and comes.

@@ -3,9 +3,7 @@
 mod board;
 mod events;
 
-use std::collections::BTreeSet;
 use std::io::{IsTerminal, Write};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -18,7 +16,7 @@ use super::{CANCELLED, barrier, is_styled, print, run_options, say, show, text};
 use crate::script::{Disk, Files, show_all};
 use crate::task::Task;
 use crate::workbench::terminal::Protocol;
-use crate::workbench::watch::{Notice, Watch, WatchOptions};
+use crate::workbench::watch::{Ended, Notice, Watch, WatchOptions};
 use crate::workbench::{self, Report, RunError, RunOptions, Written};
 
 use board::Board;
@@ -94,39 +92,44 @@ struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    fn run(&self, task: &Task, files: Arc<dyn Files>, tell: &(dyn Fn(Told) + Sync)) -> BTreeSet<PathBuf> {
+    fn run(&self, task: &Task, files: Arc<dyn Files>, tell: &(dyn Fn(Told) + Sync)) -> Ended {
         let task = self.progress.listen(task);
         self.progress.begin();
         let done = barrier::caught(|| self.pool.install(|| self.halves(&task, files, tell)));
         self.progress.end();
-        let mut depends = done.unwrap_or_else(|message| {
+        let mut ended = done.unwrap_or_else(|message| {
             tell(Told::Failed(Shown::message(message)));
-            BTreeSet::new()
+            Ended::default()
         });
         // Whatever happened, a save of the script is worth another try.
-        depends.insert(self.options.script.script.clone());
-        depends
+        ended.depends.insert(self.options.script.script.clone());
+        ended
     }
 
     /// The picture first, then the rest.
-    fn halves(&self, task: &Task, files: Arc<dyn Files>, tell: &(dyn Fn(Told) + Sync)) -> BTreeSet<PathBuf> {
+    fn halves(&self, task: &Task, files: Arc<dyn Files>, tell: &(dyn Fn(Told) + Sync)) -> Ended {
         let mut report = workbench::preview(self.options, files, task);
         let depends = report.outcome.dependencies.clone();
-        match self.shown(&report, "finished") {
-            Ok(shown) => tell(Told::Picture(shown)),
-            Err(failed) => {
-                failed.into_iter().for_each(|f| tell(Told::Failed(f)));
-                return depends;
+        let is_cut_short = match self.shown(&report, "finished") {
+            Ok(shown) => {
+                tell(Told::Picture(shown));
+                self.progress.begin();
+                report.figures.clear();
+                workbench::exports(self.options, &mut report, task);
+                match self.shown(&report, "exported") {
+                    Ok(shown) => tell(Told::Exported(shown)),
+                    Err(Some(failed)) => tell(Told::Failed(failed)),
+                    Err(None) => return Ended { depends, is_cut_short: true },
+                }
+                false
             }
-        }
-        self.progress.begin();
-        report.figures.clear();
-        workbench::exports(self.options, &mut report, task);
-        match self.shown(&report, "exported") {
-            Ok(shown) => tell(Told::Exported(shown)),
-            Err(failed) => failed.into_iter().for_each(|f| tell(Told::Failed(f))),
-        }
-        depends
+            Err(Some(failed)) => {
+                tell(Told::Failed(failed));
+                false
+            }
+            Err(None) => true,
+        };
+        Ended { depends, is_cut_short }
     }
 
     /// What a half of a run has to tell; nothing when it was cancelled.

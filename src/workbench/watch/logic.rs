@@ -91,11 +91,6 @@ impl Logic {
         self.phase != Phase::Idle
     }
 
-    /// True between [`Step::Cancel`] and [`Logic::finished`].
-    pub fn is_cancelling(&self) -> bool {
-        self.phase == Phase::Cancelling
-    }
-
     /// What to do at the time `now`. `Start` and `Cancel` are taken as done.
     pub fn next(&mut self, now: Duration) -> Step {
         match self.phase {

@@ -13,4 +13,4 @@ mod session;
 pub use content::{Print, Witness};
 pub use logic::{Logic, QUIET, STARVE, Step};
 pub use places::Places;
-pub use session::{Notice, POLL, Stop, Watch, WatchOptions};
+pub use session::{Ended, Notice, POLL, Stop, Watch, WatchOptions};

@@ -57,13 +57,22 @@ pub enum Notice<E> {
     },
 }
 
+/// How a run ended.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ended {
+    /// Every file that it asked for, missing ones too.
+    pub depends: BTreeSet<PathBuf>,
+    /// True when it was cancelled before it had told everything.
+    pub is_cut_short: bool,
+}
+
 enum Message<E> {
     Heard(Heard),
     /// The run reads a file for the first time.
     Asked(PathBuf),
     Told(E),
-    /// The run has ended; what it depends on, unless it broke down.
-    Finished(Option<BTreeSet<PathBuf>>),
+    /// The run has ended, or has broken down.
+    Finished(Option<Ended>),
     Stop,
 }
 
@@ -105,11 +114,10 @@ impl<E: Send + 'static> Watch<E> {
     /// Runs at once and after every change, until it is stopped.
     ///
     /// `run` gets a task that is cancelled when its work is out of date, the files to read from, and a way to tell
-    /// something before it has ended; it gives every file that it asked for, missing ones too. `notice` is called on
-    /// this thread.
+    /// something before it has ended. `notice` is called on this thread.
     pub fn watch<R>(self, files: &Arc<dyn Files>, run: R, mut notice: impl FnMut(Notice<E>))
     where
-        R: Fn(&Task, Arc<dyn Files>, &(dyn Fn(E) + Sync)) -> BTreeSet<PathBuf> + Sync,
+        R: Fn(&Task, Arc<dyn Files>, &(dyn Fn(E) + Sync)) -> Ended + Sync,
     {
         let heard = self.sender.clone();
         let ears = if self.options.poll {
@@ -195,7 +203,7 @@ impl State {
         sender: &Sender<Message<E>>,
         run: &'s R,
     ) where
-        R: Fn(&Task, Arc<dyn Files>, &(dyn Fn(E) + Sync)) -> BTreeSet<PathBuf> + Sync,
+        R: Fn(&Task, Arc<dyn Files>, &(dyn Fn(E) + Sync)) -> Ended + Sync,
     {
         self.runs += 1;
         self.touched.clear();
@@ -212,11 +220,11 @@ impl State {
                 let _ = sender.send(Message::Told(what));
             };
             let files: Arc<dyn Files> = witness.clone();
-            let depends = catch_unwind(AssertUnwindSafe(|| run(&task, files, &tell))).ok();
-            if let Some(depends) = &depends {
-                witness.complete(depends);
+            let ended = catch_unwind(AssertUnwindSafe(|| run(&task, files, &tell))).ok();
+            if let Some(ended) = &ended {
+                witness.complete(&ended.depends);
             }
-            let _ = sender.send(Message::Finished(depends));
+            let _ = sender.send(Message::Finished(ended));
         });
     }
 
@@ -287,16 +295,18 @@ impl State {
                     notice(Notice::Told(what));
                 }
             }
-            Message::Finished(depends) => {
+            Message::Finished(ended) => {
                 let Some(current) = self.current.take() else { return };
-                match depends {
+                match ended {
                     None => notice(Notice::Broken { run: current.number }),
-                    // A cancelled run has not asked for everything yet.
-                    Some(depends) if current.task.is_cancelled() && self.logic.is_cancelling() => {
-                        self.depends.extend(depends);
-                        notice(Notice::Cancelled { run: current.number });
+                    // It has not asked for everything yet.
+                    Some(ended) if ended.is_cut_short => {
+                        self.depends.extend(ended.depends);
+                        if !self.is_stopped {
+                            notice(Notice::Cancelled { run: current.number });
+                        }
                     }
-                    Some(depends) => self.depends = depends,
+                    Some(ended) => self.depends = ended.depends,
                 }
                 self.is_displaced = true;
                 self.logic.finished();
