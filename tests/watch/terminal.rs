@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// Longest wait for something that must happen.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-const GOOD: &str = "return coif.scene {}";
+const GOOD: &str = "return coif.scene { coif.head() }";
 
 /// A process that is ended with the test.
 struct Process(Child);
@@ -136,7 +136,7 @@ fn a_terminal_shows_status_error_recovery_and_is_left_clean() {
     terminal.shows("scenery", 0);
     assert_eq!(std::fs::read(dir.path().join("out/style.png")).unwrap(), picture, "the last good picture stays");
 
-    std::fs::write(&script, "return coif.scene { background = \"dark\" }").unwrap();
+    std::fs::write(&script, "return coif.scene { coif.head(), background = \"dark\" }").unwrap();
     terminal.shows("up to date", at);
     assert_ne!(std::fs::read(dir.path().join("out/style.png")).unwrap(), picture);
 
@@ -238,7 +238,7 @@ fn programs_get_one_object_per_event() {
     assert_eq!(expect("stale", 2)["good_run"], 1);
 
     // A module that is not there yet, and comes.
-    std::fs::write(&script, "return coif.scene { background = require('tone') }").unwrap();
+    std::fs::write(&script, "return coif.scene { coif.head(), background = require('tone') }").unwrap();
     expect("started", 3);
     expect("failed", 3);
     expect("stale", 3);
@@ -253,7 +253,7 @@ fn programs_get_one_object_per_event() {
 
 #[test]
 fn a_run_shows_its_picture_only_where_it_is_wanted() {
-    let (dir, _) = folder(GOOD);
+    let (dir, _script) = folder(GOOD);
     let shown = |arguments: &[&str]| {
         let output = coif(dir.path(), &[&["run", "style.lua", "--size", "64"], arguments].concat()).output().unwrap();
         assert!(output.status.success());
