@@ -54,7 +54,6 @@ pub fn made(folder: &Path, files: &[PathBuf]) -> String {
 
 /// For programs: one JSON object.
 pub fn stats(report: &Report, written: &[Written]) -> String {
-    let ms = |time: Duration| (time.as_secs_f64() * 1e5).round() / 100.0;
     let stages: serde_json::Map<String, Value> =
         report.stages.iter().map(|s| (s.what.to_owned(), json!(ms(s.time)))).collect();
     let calls: Vec<Value> = report
@@ -73,6 +72,11 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "warnings": report.outcome.diagnostics.len(),
     });
     format!("{object}\n")
+}
+
+/// Milliseconds with two decimals.
+pub fn ms(time: Duration) -> f64 {
+    (time.as_secs_f64() * 1e5).round() / 100.0
 }
 
 /// The parameters of a script, one line each.

@@ -59,6 +59,17 @@ fn place(text: &str, size: f32) -> (Vec<(char, f32)>, f32) {
     (letters, pen)
 }
 
+/// Writes `text` with a rim of `paper` around the letters, for words over a picture.
+pub fn write_over(pixmap: &mut Pixmap, text: &str, x: f32, y: f32, size: f32, colour: Colour, paper: Colour) {
+    let rim = (size / 9.0).round().max(1.0);
+    for (dx, dy) in
+        [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0), (-1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)]
+    {
+        write(pixmap, text, x + dx * rim, y + dy * rim, size, Anchor::Start, paper);
+    }
+    write(pixmap, text, x, y, size, Anchor::Start, colour);
+}
+
 /// Writes `text` with its baseline at `y`.
 pub fn write(pixmap: &mut Pixmap, text: &str, x: f32, y: f32, size: f32, anchor: Anchor, colour: Colour) {
     let Some(font) = FONT.as_ref() else { return };

@@ -79,14 +79,14 @@ pub struct Drawing {
 
 /// Draws the scene's hair parts for `camera`; lines are `pen` pixels wide.
 pub fn draw(scene: &Scene, camera: &Camera, pen: f32) -> Drawing {
-    let (mut guides, mut thin, mut bold) = (Wires::new(0.9 * pen), Wires::new(1.1 * pen), Wires::new(2.6 * pen));
-    let mut dots = Wires::new(2.6 * pen);
+    let (mut guides, mut thin, mut bold) = (Wires::new(0.6 * pen), Wires::new(1.3 * pen), Wires::new(2.6 * pen));
+    let mut dots = Wires::new(1.7 * pen);
     let mut labels = Vec::new();
     let pixel = 1.0 / camera.scale;
     for (_, hair) in scene.hair() {
         bent(hair, &mut guides);
         for root in &hair.guides.roots {
-            dot(root.position + root.normal * 0.05, 2.6 * pen, Colour::hex(0x50_55_5c), camera, &mut dots);
+            dot(root.position + root.normal * 0.05, 1.7 * pen, Colour::hex(0x50_55_5c), camera, &mut dots);
         }
         shapes(&hair.overlay, camera, &mut thin, &mut labels);
         for line in &hair.overlay.lines {

@@ -140,7 +140,7 @@ impl Tile {
                 let (a, b) = (&chunk.vertices[s as usize], &chunk.vertices[s as usize + 1]);
                 let behind = ((far.0 - 0.5 * (a.at.z + b.at.z)) * far.1).clamp(0.0, DEPTHS) as u64;
                 order.push(behind << 32 | pieces.len() as u64);
-                let width = [a, b].map(|v| bundle.width[0] + (bundle.width[1] - bundle.width[0]) * v.along);
+                let width = [a, b].map(|v| bundle.width[0] + (bundle.width[1] - bundle.width[0]) * v.along());
                 pieces.push(Piece { ends: [a.at, b.at], width, bundle, chunk, segment: s as usize });
             }
         }
@@ -171,7 +171,8 @@ impl Tile {
         }
         let d = b - a;
         let length = d.truncate().length();
-        if !(d.x > 1e-6) {
+        // Both ends on one pixel, or not a number.
+        if d.x <= 1e-6 || !length.is_finite() {
             return;
         }
         // Broad lines are lengthened a little, or their outer bends would gape.
@@ -223,7 +224,9 @@ impl Tile {
             return;
         }
         let cover = canvas.layer.cover[at] * canvas.solid;
-        pixel.light += canvas.layer.colour[at] * (pixel.open * cover);
+        // Skin under hair lies in the same fine shadow as the strands around it.
+        let lit = 0.35 + 0.65 * pixel.open;
+        pixel.light += canvas.layer.colour[at] * (pixel.open * cover * lit);
         let before = pixel.open;
         pixel.open *= 1.0 - cover;
         pixel.surface = f32::NEG_INFINITY;
@@ -260,13 +263,13 @@ impl Tile {
 fn colour(bundle: &Bundle, chunk: &Chunk, vertex: usize, canvas: &Canvas) -> Vec3 {
     let v = &chunk.vertices[vertex];
     match bundle.ink {
-        Ink::Flat(colours) => colours[v.node as usize],
+        Ink::Flat(colours) => colours[bundle.node(chunk.line(v), v.along())],
         Ink::Hair(coat, roots) => {
             let d = chunk.direction(vertex);
             let d = Vec3::new(d.x, -d.y, d.z * canvas.camera.scale);
             let tangent = canvas.camera.to_world(d).normalize_or_zero();
-            let strand = coat.strand(roots.get(v.line as usize).map_or(0, |r| r.id));
-            canvas.studio.hair(&coat, &strand, canvas.camera.unproject(v.at), tangent, v.along)
+            let strand = coat.strand(roots.get(chunk.line(v)).map_or(0, |r| r.id));
+            canvas.studio.hair(&coat, &strand, canvas.camera.unproject(v.at), tangent, v.along())
         }
     }
 }

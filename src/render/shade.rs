@@ -141,7 +141,8 @@ impl<'a> Studio<'a> {
     /// Linear colour of a surface at `p` with the unit normal `n` turned to the viewer.
     pub fn surface(&self, material: &Skin, p: Vec3, n: Vec3) -> Vec3 {
         let open = self.sky.skin.sample_sky(p + n * (0.8 * self.sky.skin.cell()));
-        let open = 0.25 * open.max(0.0).sqrt() + 0.75 * open;
+        // Light that hair and skin throw at each other keeps a face readable between curtains of hair.
+        let open = 0.16 + 0.24 * open.max(0.0).sqrt() + 0.60 * open;
         let mut sum = material.albedo * SKY * (open * (0.66 + 0.30 * n.dot(self.up)));
         // Light that bounced inside the skin comes out redder and past the edge of the shadow.
         let wrap = Vec3::new(0.34, 0.20, 0.14);
@@ -151,7 +152,8 @@ impl<'a> Studio<'a> {
                 Some(grid) => grid.sample_toward(p + (n + lamp.toward) * (0.5 * grid.cell()), lamp.toward),
                 None => open,
             };
-            let lit = nl > -0.34 && hair > 0.004;
+            let hair = 0.14 + 0.86 * hair;
+            let lit = nl > -0.34;
             let reach = if !lit { 0.0 } else { hair * lamp.head.as_ref().map_or(1.0, |head| head.sample(p + n * 0.1)) };
             let soft = ((Vec3::splat(nl) + wrap) / (Vec3::ONE + wrap)).max(Vec3::ZERO);
             let reach_rgb = Vec3::new(reach.max(0.0).sqrt() * 0.35 + reach * 0.65, reach, reach);

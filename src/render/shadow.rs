@@ -149,7 +149,7 @@ impl Grid {
         let stride = [self.size[1] * self.size[2], self.size[2], 1][axis];
         let n = self.size[axis];
         for start in 0..self.values.len() {
-            if (start / stride) % n != 0 {
+            if !(start / stride).is_multiple_of(n) {
                 continue;
             }
             let mut before = 0.0;
@@ -262,7 +262,7 @@ fn splat(
         let last = (nodes.len() as f32 - 1.0).max(1.0);
         for (k, w) in nodes.windows(2).enumerate() {
             let length = w[0].distance(w[1]);
-            if !(length < 1e3) {
+            if !length.is_finite() || length > 1e3 {
                 continue;
             }
             let area = length * (root + (tip - root) * (k as f32 + 0.5) / last) * per_volume;

@@ -327,8 +327,9 @@ fn letter(
             let at = camera.project(word.at);
             let inside = at.x > 0.0 && at.y > size && at.x < camera.width as f32 && at.y < camera.height as f32;
             if inside {
-                let text = lettering::fitted(&word.text, 0.75 * size, camera.width as f32 - at.x);
-                lettering::write(&mut pixmap, &text, x + at.x, y + at.y - 3.0, 0.75 * size, Anchor::Start, word.colour);
+                let text = lettering::fitted(&word.text, 0.8 * size, camera.width as f32 - at.x);
+                let (left, base) = (x + at.x, y + at.y - 3.0);
+                lettering::write_over(&mut pixmap, &text, left, base, 0.8 * size, word.colour, paper.paper);
             }
         }
     }
@@ -417,7 +418,7 @@ fn grouped(n: usize) -> String {
     let digits = n.to_string();
     let mut out = String::new();
     for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i) % 3 == 0 {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
             out.push(',');
         }
         out.push(c);

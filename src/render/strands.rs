@@ -44,17 +44,33 @@ pub enum Ink<'a> {
     Flat(&'a [Vec3]),
 }
 
-/// A place on a line in the picture.
+impl Bundle<'_> {
+    /// The node of a line that lies at or before the fraction `along` of it.
+    pub fn node(&self, line: usize, along: f32) -> usize {
+        let (first, end) = (self.offsets[line] as usize, self.offsets[line + 1] as usize);
+        // Half a step of what a vertex can hold, so that rounding does not lose a node.
+        first + ((along + 0.5 / ALONG) * (end - first - 1) as f32) as usize
+    }
+}
+
+/// Steps in which a vertex knows its place along its line.
+const ALONG: f32 = 65_535.0;
+
+/// A place on a line in the picture. 16 bytes: reading these, scattered as they are, is what a tile does most.
 #[derive(Clone, Copy, Debug)]
 pub struct Vertex {
     /// Pixels and depth.
     pub at: Vec3,
+    along: u16,
+    /// Line within the chunk.
+    line: u16,
+}
+
+impl Vertex {
     /// Where along its line, 0 first node to 1 last.
-    pub along: f32,
-    /// Node of the bundle at or before it.
-    pub node: u32,
-    /// Line of the bundle.
-    pub line: u32,
+    pub fn along(&self) -> f32 {
+        f32::from(self.along) / ALONG
+    }
 }
 
 /// Simplified lines and which tiles they touch. Segment `i` joins the vertices `i` and `i + 1`.
@@ -62,6 +78,8 @@ pub struct Vertex {
 pub struct Chunk {
     /// Which bundle.
     pub bundle: u32,
+    /// The bundle's line that is the chunk's first.
+    first: usize,
     /// Vertices, line after line.
     pub vertices: Vec<Vertex>,
     /// Colours of the vertices as far as they are known: 10 bits per channel of the square root, and one that is always
@@ -74,6 +92,11 @@ pub struct Chunk {
 }
 
 impl Chunk {
+    /// Which line of the bundle a vertex is on.
+    pub fn line(&self, vertex: &Vertex) -> usize {
+        self.first + usize::from(vertex.line)
+    }
+
     /// The linear colour of a vertex, found by `shade` when it is asked for first. Channels are within 0..=1.
     pub fn colour(&self, vertex: usize, shade: impl FnOnce() -> Vec3) -> Vec3 {
         let mut bits = self.colours[vertex].load(Ordering::Relaxed);
@@ -154,18 +177,18 @@ pub fn gather(bundles: &[Bundle], camera: &Camera, tiles: Tiles, task: &Task) ->
             let mut nodes = Vec::new();
             let bundle = &bundles[b];
             for line in first..end {
-                simplify(bundle, line, camera, &mut nodes, &mut vertices);
+                simplify(bundle, line, (line - first) as u16, camera, &mut nodes, &mut vertices);
             }
-            Ok(sorted(b as u32, vertices, bundle.width, tiles))
+            Ok(sorted(b as u32, first, vertices, bundle.width, tiles))
         })
         .collect()
 }
 
-/// Appends line number `line` without the nodes that do not show.
-fn simplify(bundle: &Bundle, line: usize, camera: &Camera, nodes: &mut Vec<Vec3>, out: &mut Vec<Vertex>) {
-    let (first, end) = (bundle.offsets[line] as usize, bundle.offsets[line + 1] as usize);
+/// Appends a line of the bundle, `number` within its chunk, without the nodes that do not show.
+fn simplify(bundle: &Bundle, line: usize, number: u16, camera: &Camera, nodes: &mut Vec<Vec3>, out: &mut Vec<Vertex>) {
+    let (start, end) = (bundle.offsets[line] as usize, bundle.offsets[line + 1] as usize);
     nodes.clear();
-    nodes.extend(bundle.points[first..end].iter().map(|&p| camera.project(p)));
+    nodes.extend(bundle.points[start..end].iter().map(|&p| camera.project(p)));
     let margin = bundle.width[0].max(bundle.width[1]) + 2.0;
     let (lo, hi) = nodes.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     let outside =
@@ -174,12 +197,8 @@ fn simplify(bundle: &Bundle, line: usize, camera: &Camera, nodes: &mut Vec<Vec3>
         return;
     }
     let last = (nodes.len() - 1) as f32;
-    let vertex = |at, k: usize, part: f32| Vertex {
-        at,
-        along: (k as f32 + part) / last,
-        node: (first + k) as u32,
-        line: line as u32,
-    };
+    let vertex =
+        |at, k: usize, part: f32| Vertex { at, along: ((k as f32 + part) / last * ALONG + 0.5) as u16, line: number };
     out.push(vertex(nodes[0], 0, 0.0));
     let mut i = 0;
     while i + 1 < nodes.len() {
@@ -221,7 +240,7 @@ fn follows(nodes: &[Vec3]) -> bool {
 }
 
 /// A chunk with its segments counted into tiles.
-fn sorted(bundle: u32, vertices: Vec<Vertex>, width: [f32; 2], tiles: Tiles) -> Chunk {
+fn sorted(bundle: u32, first: usize, vertices: Vec<Vertex>, width: [f32; 2], tiles: Tiles) -> Chunk {
     let margin = Vec3::splat(0.5 * width[0].max(width[1]) + 1.0);
     let touched = |i: usize| {
         let (a, b) = (&vertices[i], &vertices[i + 1]);
@@ -247,5 +266,97 @@ fn sorted(bundle: u32, vertices: Vec<Vertex>, width: [f32; 2], tiles: Tiles) -> 
         }
     }
     let colours = vertices.iter().map(|_| AtomicU32::new(0)).collect();
-    Chunk { bundle, vertices, colours, segments, starts }
+    Chunk { bundle, first, vertices, colours, segments, starts }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::camera::axes;
+    use crate::scene::View;
+
+    fn camera() -> Camera {
+        let m = axes(View::Front);
+        Camera {
+            right: m.x_axis,
+            up: m.y_axis,
+            toward: m.z_axis,
+            centre: Vec3::ZERO,
+            scale: 10.0,
+            width: 200,
+            height: 200,
+        }
+    }
+
+    fn chunks(lines: &[Vec<Vec3>]) -> (Vec<Chunk>, Vec<Vec3>, Vec<u32>) {
+        let points: Vec<Vec3> = lines.iter().flatten().copied().collect();
+        let mut offsets = vec![0];
+        for line in lines {
+            offsets.push(offsets[offsets.len() - 1] + line.len() as u32);
+        }
+        let bundle = Bundle { points: &points, offsets: &offsets, width: [1.0, 1.0], ink: Ink::Flat(&[]) };
+        let chunks = gather(&[bundle], &camera(), Tiles::new(200, 200, 32), &Task::new()).unwrap();
+        (chunks, points, offsets)
+    }
+
+    #[test]
+    fn simplified_lines_stay_near_the_true_ones() {
+        use crate::math::trig::{cos, sin};
+        let line: Vec<Vec3> = (0..400)
+            .map(|i| {
+                let a = i as f32 * 0.05;
+                Vec3::new(5.0 * cos(a), 0.02 * i as f32 - 4.0, 5.0 * sin(a))
+            })
+            .collect();
+        let (chunks, points, _) = chunks(&[line]);
+        let v = &chunks[0].vertices;
+        assert!(v.len() < 350, "{} of 400", v.len());
+        for p in &points {
+            let p = camera().project(*p).truncate();
+            let nearest = v
+                .windows(2)
+                .map(|w| {
+                    let (a, b) = (w[0].at.truncate(), w[1].at.truncate());
+                    let t = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-9)).clamp(0.0, 1.0);
+                    p.distance(a + (b - a) * t)
+                })
+                .fold(f32::INFINITY, f32::min);
+            assert!(nearest <= TOLERANCE + 1e-3, "{nearest}");
+        }
+    }
+
+    #[test]
+    fn every_tile_finds_its_segments() {
+        let lines = vec![
+            vec![Vec3::new(-9.0, 8.0, 0.0), Vec3::new(9.0, -7.0, 2.0)],
+            vec![Vec3::new(-30.0, 0.0, 0.0), Vec3::new(30.0, 1.0, 0.0)],
+            vec![Vec3::new(50.0, 50.0, 0.0), Vec3::new(60.0, 50.0, 0.0)],
+        ];
+        let (chunks, ..) = chunks(&lines);
+        let tiles = Tiles::new(200, 200, 32);
+        for chunk in &chunks {
+            assert!(chunk.vertices.iter().all(|v| v.line != 2), "a line outside the picture");
+            for (s, w) in chunk.vertices.windows(2).enumerate().filter(|(_, w)| w[0].line == w[1].line) {
+                let middle = (w[0].at + w[1].at) * 0.5;
+                if middle.x < 0.0 || middle.y < 0.0 || middle.x >= 200.0 || middle.y >= 200.0 {
+                    continue;
+                }
+                let tile = middle.y as usize / 32 * tiles.columns + middle.x as usize / 32;
+                assert!(chunk.segments(tile).contains(&(s as u32)));
+                assert!((w[1].at - w[0].at).truncate().length() <= LONGEST + 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn vertices_know_their_nodes() {
+        for n in [2_usize, 3, 64, 1000] {
+            let offsets = [0, n as u32];
+            let bundle = Bundle { points: &[], offsets: &offsets, width: [1.0, 1.0], ink: Ink::Flat(&[]) };
+            for k in 0..n {
+                let along = (k as f32 / (n - 1) as f32 * ALONG + 0.5) as u16;
+                assert_eq!(bundle.node(0, f32::from(along) / ALONG), k, "of {n}");
+            }
+        }
+    }
 }

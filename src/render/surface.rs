@@ -61,7 +61,7 @@ pub fn draw(shells: &[Shell], camera: &Camera, studio: &Studio, task: &Task) -> 
             let lo = corners[0].min(corners[1]).min(corners[2]);
             let hi = corners[0].max(corners[1]).max(corners[2]);
             let seen = lo.x < width as f32 && lo.y < height as f32 && hi.x > 0.0 && hi.y > 0.0;
-            if !seen || !(lo.is_finite() && hi.is_finite()) {
+            if !(seen && lo.is_finite() && hi.is_finite()) {
                 continue;
             }
             let (first, last) = (lo.y.max(0.0) as usize / BAND, hi.y.min(height as f32 - 1.0) as usize / BAND);

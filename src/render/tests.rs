@@ -204,7 +204,7 @@ fn any_number_of_views_fits() {
             let options = SheetOptions { columns, ..bare(48, 40) };
             let p = draw(&s, &options);
             let shown = n.max(1) as u32;
-            assert!(p.width % 48 == 0 && p.height % 40 == 0);
+            assert!(p.width.is_multiple_of(48) && p.height.is_multiple_of(40));
             let cells = p.width / 48 * (p.height / 40);
             assert!(cells >= shown && cells - shown < p.width / 48, "{n} views in {cells} cells");
             // Every view shows the ball in its middle.

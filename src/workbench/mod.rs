@@ -7,8 +7,10 @@ mod figures;
 mod new;
 mod output;
 mod run;
+pub mod terminal;
+pub mod watch;
 
 pub use figures::{PartFigures, figures};
 pub use new::{DEFINITIONS, NewError, api, new};
 pub use output::{Output, WriteError, Written, write_all};
-pub use run::{Report, RunError, RunOptions, Stage, run};
+pub use run::{Report, RunError, RunOptions, Stage, exports, preview, run};
