@@ -31,8 +31,9 @@ local behind = coif.box { min = { -25, -100, -60 }, max = { 25, 30, tie.z - 0.5 
 local fall   = coif.queue { coif.domain.directional { box = behind, direction = { 0, -1, -0.05 } } }
 
 local hair = head:scalp()
-  -- a few hundred guides, each standing for one wisp
-  :guides { count = 600, length = p.length, length_variation = 0.2, stiffness = 1.5 }
+  -- a few hundred guides, each standing for one wisp; they lie away from the chin from the first
+  :guides { count = 600, length = p.length, length_variation = 0.2, stiffness = 1.5,
+    lay_from = head:at("chin", { 0, 2, 6 }), lay_amount = 0.85 }
   :grow {
     global = fall,
     locals = {
