@@ -493,7 +493,7 @@ local Region = {}
 
 ---What `Region:guides` takes.
 ---@class (exact) coif.Region.guides.fields
----@field count? number # How many. [whole; default 800]
+---@field count? number # How many. [whole; 1 or more; default 800]
 ---@field length? number # The longest strand's length. [cm; 0.05 to 1000; default 25]
 ---@field length_variation? number # How much shorter strands may be, as a part of the length: 0 all alike, 1 down to nothing. [0 to 1; default 0.1]
 ---@field step? number # Length of a growth step. [cm; 0.01 to 100; default 0.5]
@@ -593,7 +593,7 @@ function Strands:natural(fields) end
 
 ---What `Strands:fill` takes.
 ---@class (exact) coif.Strands.fill.fields
----@field strands? number # How many strands. [whole; default 40000]
+---@field strands? number # How many strands. [whole; 1 or more; default 40000]
 ---@field nodes? number # Nodes per strand; as many as the guides have, at most 128, when left out. [whole; 2 to 4096]
 ---@field neighbours? number # How many guides a strand follows at most. [whole; 1 to 8; default 4]
 ---@field length_variation? number # How much shorter strands may be than their guides, as a part of the length. [0 to 1; default 0.05]

@@ -130,6 +130,12 @@ impl Field {
         self
     }
 
+    /// Its limits in words: `0 to 10`, `1 or more`.
+    pub fn interval(&self) -> Option<String> {
+        // An upper end that no one reaches only says "no limit here": what it costs is told elsewhere.
+        self.range.map(|(lo, hi)| if hi >= 1e12 { format!("{lo} or more") } else { format!("{lo} to {hi}") })
+    }
+
     /// True when a script must give it.
     pub fn is_required(&self) -> bool {
         self.default.is_none()

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::Document;
-use super::words::{class, default, first_sentence, functions as all_functions, number, one_line, shared};
+use super::words::{class, default, first_sentence, functions as all_functions, one_line, shared};
 use crate::params::{Field, Kind};
 use crate::script::bind::SEED;
 use crate::script::object::OPERATORS;
@@ -158,8 +158,8 @@ fn takes(registry: &Registry, owner: &str, field: &Field) -> String {
         (Kind::List(inner), None) if field.is_positional => format!("each a {}", words(registry, owner, inner)),
         (kind, None) => words(registry, owner, kind),
     };
-    if let Some((lo, hi)) = field.range {
-        let _ = write!(out, ", {} to {}", number(lo), number(hi));
+    if let Some(interval) = field.interval() {
+        let _ = write!(out, ", {interval}");
     }
     if let Some(unit) = field.unit {
         let _ = write!(out, " {unit}");

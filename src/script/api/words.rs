@@ -126,7 +126,7 @@ pub fn limits(field: &Field) -> String {
         parts.push("whole".to_owned());
     }
     parts.extend(field.unit.map(ToOwned::to_owned));
-    parts.extend(field.range.map(|(lo, hi)| format!("{} to {}", number(lo), number(hi))));
+    parts.extend(field.interval());
     parts.extend(default(field).map(|d| format!("default {d}")));
     if parts.is_empty() { String::new() } else { format!(" [{}]", parts.join("; ")) }
 }
@@ -139,11 +139,6 @@ pub fn default(field: &Field) -> Option<String> {
 /// Every function below `coif`.
 pub fn functions(registry: &Registry) -> impl Iterator<Item = &Entry> {
     registry.functions.iter()
-}
-
-/// `40000`, `0.005`, without an exponent.
-pub fn number(n: f64) -> String {
-    n.to_string()
 }
 
 #[cfg(test)]
