@@ -42,7 +42,6 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
 
 /// For programs: one JSON object.
 pub fn stats(report: &Report, written: &[Written]) -> String {
-    let ms = |time: Duration| (time.as_secs_f64() * 1e5).round() / 100.0;
     let stages: serde_json::Map<String, Value> =
         report.stages.iter().map(|s| (s.what.to_owned(), json!(ms(s.time)))).collect();
     let calls: Vec<Value> = report
@@ -61,6 +60,11 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "warnings": report.outcome.diagnostics.len(),
     });
     format!("{object}\n")
+}
+
+/// Milliseconds with two decimals.
+pub fn ms(time: Duration) -> f64 {
+    (time.as_secs_f64() * 1e5).round() / 100.0
 }
 
 /// The parameters of a script, one line each.

@@ -6,7 +6,9 @@
 mod figures;
 mod output;
 mod run;
+pub mod terminal;
+pub mod watch;
 
 pub use figures::{PartFigures, figures};
 pub use output::{Output, WriteError, Written, write_all};
-pub use run::{Report, RunError, RunOptions, Stage, run};
+pub use run::{Report, RunError, RunOptions, Stage, exports, preview, run};
