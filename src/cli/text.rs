@@ -6,7 +6,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use crate::script::{Origin, Outcome};
-use crate::workbench::{Report, Written};
+use crate::workbench::{Report, Stage, Written};
 
 /// For people: parts, times, files.
 pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
@@ -26,7 +26,11 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
             triangles => writeln!(out, "{name:>8}  {} triangles", thousands(triangles)),
         };
     }
-    let stages: Vec<String> = report.stages.iter().map(|s| format!("{} {}", s.what, milliseconds(s.time))).collect();
+    let stage = |s: &Stage| match s.origin {
+        Some(Origin::Hit) => format!("{} {} (hit)", s.what, milliseconds(s.time)),
+        Some(Origin::Computed) | None => format!("{} {}", s.what, milliseconds(s.time)),
+    };
+    let stages: Vec<String> = report.stages.iter().map(stage).collect();
     let all: Duration = report.stages.iter().map(|s| s.time).sum();
     let _ = writeln!(out, "{:>8}  {}: {}", "time", milliseconds(all), stages.join(", "));
     if timings {
