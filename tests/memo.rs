@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use coif::render::SheetOptions;
 use coif::export::StrandForm;
+use coif::render::SheetOptions;
 use coif::scene::Scene;
 use coif::script::{Ending, Memo, Memory, Options, Origin, Outcome, run};
 use coif::task::Task;
 use coif::workbench::{self, Report, RunOptions};
 
-const SCRIPT: &str = r#"-- A style that tries every step, and warns.
+const SCRIPT: &str = r##"-- A style that tries every step, and warns.
 local head = coif.head()
 local down = coif.domain.directional { box = head:box("all"), direction = coif.down, noise = 0.1 }
 local far = coif.domain.directional { box = coif.box { min = { 90, 90, 90 }, max = { 91, 91, 91 } }, direction = coif.up }
@@ -21,7 +21,7 @@ local grown = head:scalp():guides { count = 40, length = 6, step = 1 }:grow {
 local waved = grown:natural { coif.domain.curl { box = head:box("all"), period = 4, radius = 0.3 } }
 local hair = waved:fill { strands = 200, material = coif.material.hair { root_colour = "#201008" } }
 return coif.scene { head, hair, views = { "front" } }
-"#;
+"##;
 
 const STEPS: [&str; 4] = ["Region:guides", "Guides:grow", "Strands:natural", "Strands:fill"];
 
@@ -72,7 +72,8 @@ fn only_what_changed_is_computed() {
     for (from, to, steps) in [
         ("radius = 0.3", "radius = 0.4", &STEPS[2..]),
         ("noise = 0.1", "noise = 0.2", &STEPS[1..]),
-        ("return root.x > 0", "return root.x > 1", &STEPS[1..]),
+        // The queue acts nowhere: the same guides grow, and nothing after them asks why.
+        ("return root.x > 0", "return root.x > 1", &STEPS[1..2]),
         ("count = 40", "count = 41", &STEPS[..]),
         ("strands = 200", "strands = 210", &STEPS[3..]),
         ("head:scalp()", "head:scalp():where(function(p) return p.y > 2 end)", &STEPS[..]),
@@ -135,9 +136,14 @@ fn lump(wide: f32) -> String {
     let (rows, columns) = (24_u32, 32_u32);
     for i in 0..=rows {
         for j in 0..columns {
-            let (a, b) = (std::f32::consts::PI * i as f32 / rows as f32, std::f32::consts::TAU * j as f32 / columns as f32);
+            let (a, b) =
+                (std::f32::consts::PI * i as f32 / rows as f32, std::f32::consts::TAU * j as f32 / columns as f32);
             let ring = if i == 0 || i == rows { 0.0 } else { coif::math::trig::sin(a) };
-            let p = [wide * ring * coif::math::trig::sin(b), 12.0 * coif::math::trig::cos(a), 9.5 * ring * coif::math::trig::cos(b)];
+            let p = [
+                wide * ring * coif::math::trig::sin(b),
+                12.0 * coif::math::trig::cos(a),
+                9.5 * ring * coif::math::trig::cos(b),
+            ];
             text += &format!("v {} {} {}\n", p[0], p[1], p[2]);
         }
     }
