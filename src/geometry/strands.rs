@@ -164,7 +164,9 @@ impl Strands {
 
     /// Bounds of all nodes.
     pub fn bounds(&self) -> Bounds {
-        Bounds::of(self.points.iter().copied())
+        let pieces = self.points.par_chunks(1 << 15).map(|piece| Bounds::of(piece.iter().copied()));
+        // Least and greatest are the same in any order.
+        pieces.reduce(|| Bounds::EMPTY, Bounds::union)
     }
 
     /// Checks everything that the rest of Coif relies on.
