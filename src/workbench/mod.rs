@@ -4,6 +4,7 @@
 //! and after an error the folder is as it was before.
 
 mod figures;
+mod keep;
 mod new;
 mod output;
 mod run;

@@ -4,12 +4,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::keep::{Shows, kept, scene_key};
 use super::output::{Output, WriteError, Written, write_all};
 use super::{PartFigures, figures};
 use crate::export::{ExportError, GlbOptions, StrandForm, glb, guides_glb};
 use crate::render::{PngError, RenderError, SheetOptions, Speed, png, sheet};
 use crate::scene::{Background, Scene, View};
-use crate::script::{self, Ending, Files, Outcome};
+use crate::script::{self, Ending, Files, Origin, Outcome};
 use crate::task::Task;
 
 /// What is wanted of a run.
@@ -44,6 +45,8 @@ pub struct Stage {
     pub what: &'static str,
     /// Wall-clock time.
     pub time: Duration,
+    /// Whether the memo had its result; none for a step whose result is not kept.
+    pub origin: Option<Origin>,
 }
 
 /// Why there are no files.
@@ -184,10 +187,17 @@ fn pictures(
 fn models(options: &RunOptions, scene: &Scene, task: &Task, stages: &mut Vec<Stage>) -> Result<Vec<Output>, RunError> {
     let name = &options.script.name();
     let glb_options = GlbOptions { strands: options.strands, tolerance: options.tolerance, ..GlbOptions::default() };
-    let bytes = timed(stages, "glb", || glb(scene, &glb_options, task))?;
+    let memo = &options.script.memo;
+    let key = |what| {
+        let mut key = scene_key(what, scene, Shows::Places, memo);
+        key.data(&glb_options);
+        key
+    };
+    let bytes = found(stages, "glb", || kept(memo, &key("glb 1"), || glb(scene, &glb_options, task)))?;
     let mut outputs = vec![Output { name: format!("{name}.glb"), bytes }];
     if options.guides {
-        let bytes = timed(stages, "guides", || guides_glb(scene, &glb_options, task))?;
+        let make = || guides_glb(scene, &glb_options, task);
+        let bytes = found(stages, "guides", || kept(memo, &key("guides glb 1"), make))?;
         outputs.push(Output { name: format!("{name}.guides.glb"), bytes });
     }
     Ok(outputs)
@@ -200,16 +210,34 @@ fn picture(
     speed: Speed,
     task: &Task,
     stages: &mut Vec<Stage>,
-) -> Result<Vec<u8>, RunError> {
+) -> Result<Arc<Vec<u8>>, RunError> {
     let mut drawn = scene.clone();
     drawn.look.debug = debug;
-    let what = if debug { "debug picture" } else { "picture" };
-    timed(stages, what, || Ok(png::encode(&sheet(&drawn, &options.sheet, task)?, speed)?))
+    let (what, shows) = if debug { ("debug picture", Shows::Domains) } else { ("picture", Shows::Hair) };
+    let memo = &options.script.memo;
+    found(stages, what, || {
+        let mut key = scene_key("picture 1", &drawn, shows, memo);
+        key.data(&options.sheet).data(&speed);
+        kept(memo, &key, || Ok(png::encode(&sheet(&drawn, &options.sheet, task)?, speed)?))
+    })
+}
+
+/// Times a step that may be found in the memo.
+fn found<T, E>(
+    stages: &mut Vec<Stage>,
+    what: &'static str,
+    work: impl FnOnce() -> Result<(T, Origin), E>,
+) -> Result<T, E> {
+    let result = timed(stages, what, work)?;
+    if let Some(stage) = stages.last_mut() {
+        stage.origin = Some(result.1);
+    }
+    Ok(result.0)
 }
 
 fn timed<R>(stages: &mut Vec<Stage>, what: &'static str, work: impl FnOnce() -> R) -> R {
     let started = Instant::now();
     let result = work();
-    stages.push(Stage { what, time: started.elapsed() });
+    stages.push(Stage { what, time: started.elapsed(), origin: None });
     result
 }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::cli::text;
 use crate::script::{Diagnostic, Frame, Outcome, Severity};
-use crate::workbench::{Report, Written};
+use crate::workbench::{Report, Stage, Written};
 
 /// Number of this description of events; raised when a reader would have to change.
 const VERSION: u32 = 1;
@@ -48,7 +48,11 @@ pub fn stale(good_run: u64) -> Value {
 
 /// A half of a run is done.
 pub fn good(event: &str, report: &Report, written: &[Written]) -> Value {
-    let stages: Vec<Value> = report.stages.iter().map(|s| json!({ "stage": s.what, "ms": text::ms(s.time) })).collect();
+    let stage = |s: &Stage| match s.origin {
+        Some(origin) => json!({ "stage": s.what, "ms": text::ms(s.time), "origin": origin.text() }),
+        None => json!({ "stage": s.what, "ms": text::ms(s.time) }),
+    };
+    let stages: Vec<Value> = report.stages.iter().map(stage).collect();
     let files: Vec<Value> =
         written.iter().map(|f| json!({ "path": f.path.to_string_lossy(), "bytes": f.bytes })).collect();
     let mut object = json!({ "event": event, "stages": stages, "files": files });
