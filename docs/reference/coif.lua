@@ -594,7 +594,7 @@ function Strands:natural(fields) end
 ---What `Strands:fill` takes.
 ---@class (exact) coif.Strands.fill.fields
 ---@field strands? number # How many strands. [whole; 1 or more; default 40000]
----@field nodes? number # Nodes per strand; as many as the guides have, at most 128, when left out. [whole; 2 to 4096]
+---@field nodes? number # Nodes per strand; when left out as many as the guides' bends need, at most as many as the guides have or 128. [whole; 2 to 4096]
 ---@field neighbours? number # How many guides a strand follows at most. [whole; 1 to 8; default 4]
 ---@field length_variation? number # How much shorter strands may be than their guides, as a part of the length. [0 to 1; default 0.05]
 ---@field noise? number # Standard deviation of the gaussian noise on the tangents, smooth along the strand. [0 to 10; default 0.02]
