@@ -37,6 +37,10 @@ pub enum Command {
     Watch(Box<WatchArguments>),
     /// List the parameters of a script
     Params(ParamsArguments),
+    /// Make a folder with a new style, a test of it and settings for the editor
+    New(NewArguments),
+    /// Write the definitions for editors and the reference of all functions
+    Api(ApiArguments),
 }
 
 /// What is common to every command that runs a script.
@@ -131,6 +135,22 @@ pub struct ParamsArguments {
     /// Print JSON instead of a table
     #[arg(long)]
     pub json: bool,
+}
+
+/// `coif new`.
+#[derive(Args, Debug)]
+pub struct NewArguments {
+    /// Folder to make; its last part is the style's name
+    #[arg(value_name = "NAME")]
+    pub folder: PathBuf,
+}
+
+/// `coif api`.
+#[derive(Args, Debug)]
+pub struct ApiArguments {
+    /// Folder for `coif.lua`, the library and the pages
+    #[arg(short, long, value_name = "DIR", default_value = crate::workbench::DEFINITIONS)]
+    pub out: PathBuf,
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {

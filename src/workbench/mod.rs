@@ -5,11 +5,13 @@
 
 mod figures;
 mod keep;
+mod new;
 mod output;
 mod run;
 pub mod terminal;
 pub mod watch;
 
 pub use figures::{PartFigures, figures};
+pub use new::{DEFINITIONS, NewError, api, new};
 pub use output::{Output, WriteError, Written, write_all};
 pub use run::{Report, RunError, RunOptions, Stage, exports, preview, run};

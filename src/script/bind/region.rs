@@ -92,7 +92,7 @@ crate::params! {
     /// The part of the region for whose places a function returns true.
     pub struct WhereFields("Region:where") {
         /// Takes a place on the head (a vector), returns true or false.
-        test: Function;
+        test: Function, takes("(place: vector): boolean");
     }
 }
 
@@ -100,7 +100,7 @@ crate::params! {
     /// The same region with hair thinned out.
     pub struct DensityFields("Region:density") {
         /// A number from 0 to 1, or a function that takes a place on the head (a vector) and returns one.
-        density: Value;
+        density: Value, takes("number|fun(place: vector): number");
     }
 }
 
@@ -108,7 +108,7 @@ crate::params! {
     /// The same region with a parting through it: strands on its two sides never blend.
     pub struct PartFields("Region:parting") {
         /// A parting, or a list of points to lay one through.
-        line: Value;
+        line: Value, takes("Parting|Point[]");
     }
 }
 
