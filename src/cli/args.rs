@@ -94,7 +94,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "FORM", default_value = "ribbons", value_parser = form)]
     pub strands: StrandForm,
     /// Farthest that a strand in the GLB may lie from its true course
-    #[arg(long, value_name = "CM", default_value_t = 0.02, value_parser = tolerance)]
+    #[arg(long, value_name = "CM", default_value_t = 0.1, value_parser = tolerance)]
     pub tolerance: f32,
     /// Print one JSON object on standard output: counts per part, times per stage, files
     #[arg(long)]

@@ -26,7 +26,7 @@ crate::params! {
     /// Fills the scalp with strands between guides.
     pub struct FillOptions("Strands:fill") {
         /// How many strands.
-        strands: usize = 40_000, range(1.0, 5_000_000.0);
+        strands: usize = 40_000, range(1.0, 1e15);
         /// Nodes per strand; when left out as many as the guides' bends need, at most as many as the guides have or 128.
         nodes: Option<usize>, range(2.0, 4096.0);
         /// How many guides a strand follows at most.

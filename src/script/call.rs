@@ -192,7 +192,7 @@ impl Call<'_> {
 
     /// An error of the method, about the call.
     pub fn groom(&self, error: &GroomError) -> Raised {
-        self.problem(error.to_string(), None)
+        self.problem(error.to_string(), error.hint())
     }
 
     /// The arguments as they came.

@@ -11,7 +11,7 @@ use crate::script::Files;
 
 /// What stands at a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Print {
+pub enum Fingerprint {
     /// Nothing.
     Missing,
     /// A folder, or a file that cannot be read.
@@ -20,8 +20,8 @@ pub enum Print {
     Content(u128),
 }
 
-impl Print {
-    /// The print of what a read gave.
+impl Fingerprint {
+    /// The fingerprint of what a reading gave.
     pub fn of(read: &io::Result<Vec<u8>>) -> Self {
         match read {
             Ok(bytes) => Self::Content(xxh3_128(bytes)),
@@ -34,7 +34,7 @@ impl Print {
 /// Files that are noted as they are read: what a run saw is compared later, not what stood there when it ended.
 pub struct Witness {
     inner: Arc<dyn Files>,
-    seen: Mutex<BTreeMap<PathBuf, Print>>,
+    seen: Mutex<BTreeMap<PathBuf, Fingerprint>>,
     /// Told of every path at its first reading.
     asked: Box<dyn Fn(&Path) + Send + Sync>,
 }
@@ -45,10 +45,10 @@ impl Witness {
         Self { inner, seen: Mutex::default(), asked: Box::new(asked) }
     }
 
-    fn note(&self, path: &Path, print: Print) {
+    fn note(&self, path: &Path, fingerprint: Fingerprint) {
         let Ok(mut seen) = self.seen.lock() else { return };
         let is_first = !seen.contains_key(path);
-        seen.insert(path.to_path_buf(), print);
+        seen.insert(path.to_path_buf(), fingerprint);
         drop(seen);
         if is_first {
             (self.asked)(path);
@@ -61,7 +61,9 @@ impl Witness {
         let seen = self.seen.lock().map(|s| s.clone()).unwrap_or_default();
         paths
             .into_iter()
-            .filter(|path| seen.get(*path).is_some_and(|print| *print != Print::of(&self.inner.read(path))))
+            .filter(|path| {
+                seen.get(*path).is_some_and(|fingerprint| *fingerprint != Fingerprint::of(&self.inner.read(path)))
+            })
             .cloned()
             .collect()
     }
@@ -72,7 +74,7 @@ impl Witness {
         for path in paths {
             let is_seen = self.seen.lock().is_ok_and(|s| s.contains_key(path));
             if !is_seen {
-                self.note(path, Print::of(&self.inner.read(path)));
+                self.note(path, Fingerprint::of(&self.inner.read(path)));
             }
         }
     }
@@ -81,7 +83,7 @@ impl Witness {
 impl Files for Witness {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let read = self.inner.read(path);
-        self.note(path, Print::of(&read));
+        self.note(path, Fingerprint::of(&read));
         read
     }
 
@@ -92,7 +94,7 @@ impl Files for Witness {
     fn resolve(&self, path: &Path) -> io::Result<PathBuf> {
         let resolved = self.inner.resolve(path);
         if resolved.as_ref().is_err_and(|e| e.kind() == io::ErrorKind::NotFound) {
-            self.note(path, Print::Missing);
+            self.note(path, Fingerprint::Missing);
         }
         resolved
     }

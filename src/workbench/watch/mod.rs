@@ -10,7 +10,7 @@ mod logic;
 mod places;
 mod session;
 
-pub use content::{Print, Witness};
+pub use content::{Fingerprint, Witness};
 pub use logic::{Logic, QUIET, STARVE, Step};
 pub use places::Places;
 pub use session::{Ended, Notice, POLL, Stop, Watch, WatchOptions};
