@@ -18,6 +18,14 @@ const STACK: usize = 16 << 20;
 /// # Errors
 /// An exit code, after having said why.
 pub fn run<R: Send>(arguments: &ScriptArguments, work: impl FnOnce(&Task) -> R + Send) -> Result<R, u8> {
+    on(arguments.threads, work)
+}
+
+/// The same on so many threads; all of the machine's when not given.
+///
+/// # Errors
+/// An exit code, after having said why.
+pub fn on<R: Send>(threads: Option<u16>, work: impl FnOnce(&Task) -> R + Send) -> Result<R, u8> {
     let task = Task::new();
     listen(&task);
     std::panic::set_hook(Box::new(|info| {
@@ -25,7 +33,7 @@ pub fn run<R: Send>(arguments: &ScriptArguments, work: impl FnOnce(&Task) -> R +
             last.get_or_insert(info.to_string());
         }
     }));
-    let threads = arguments.threads.map_or(0, usize::from);
+    let threads = threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build();
     let pool = pool.map_err(|e| {
         say(&format!("error: cannot start threads: {e}\n"));

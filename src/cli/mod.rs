@@ -4,6 +4,8 @@
 
 mod args;
 mod barrier;
+mod proof;
+mod proof_text;
 mod text;
 
 use std::collections::BTreeMap;
@@ -47,6 +49,9 @@ pub fn main() -> ExitCode {
     ExitCode::from(match arguments.command {
         Command::Run(run) => command_run(&run),
         Command::Params(params) => command_params(&params),
+        Command::Sheet(sheet) => proof::command_sheet(&sheet),
+        Command::Test(test) => proof::command_test(&test),
+        Command::Diff(diff) => proof::command_diff(&diff),
     })
 }
 

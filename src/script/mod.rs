@@ -20,6 +20,7 @@ mod session;
 mod show;
 mod source;
 mod strict;
+mod testing;
 mod trace;
 
 #[cfg(test)]
@@ -32,3 +33,4 @@ pub use host::{Ending, Options, Outcome, run};
 pub use session::Timing;
 pub use show::{show, show_all};
 pub use source::Sources;
+pub use testing::{Declared, Preview, TestOutcome, run_test};

@@ -3,9 +3,13 @@
 //! Everything is made in memory first, written beside its place and renamed into it: a reader never sees half a file,
 //! and after an error the folder is as it was before.
 
+pub mod diff;
 mod figures;
 mod output;
 mod run;
+pub mod sheet;
+pub mod test;
+pub mod variations;
 
 pub use figures::{PartFigures, figures};
 pub use output::{Output, WriteError, Written, write_all};
