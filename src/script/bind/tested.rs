@@ -303,11 +303,11 @@ fn figures(parts: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
         let inside: usize = heads.iter().map(|h| within(&h.solid, &hair)).sum();
         put("strands", lengths.len() as f64);
         put("guides", guides as f64);
-        put("mean_length", sum / lengths.len().max(1) as f64);
-        put("longest", f64::from(lengths.iter().copied().fold(0.0, f32::max)));
-        put("shortest", f64::from(lengths.iter().copied().reduce(f32::min).unwrap_or(0.0)));
+        put("mean_length", plain((sum / lengths.len().max(1) as f64) as f32));
+        put("longest", plain(lengths.iter().copied().fold(0.0, f32::max)));
+        put("shortest", plain(lengths.iter().copied().reduce(f32::min).unwrap_or(0.0)));
         put("inside", inside as f64);
-        put("symmetry", f64::from(measure::mirror_distance(&hair)));
+        put("symmetry", plain(measure::mirror_distance(&hair)));
         if let Some(fraction) = covered(heads, &hair, REACH, task) {
             put("coverage", fraction);
         }
@@ -317,6 +317,11 @@ fn figures(parts: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
         fields.insert("max".into(), Value::Vector(bounds.max));
     }
     Value::Table(Table { fields, ..Table::default() })
+}
+
+/// The number that a person would write: 4.51 and not 4.510000228881836.
+fn plain(n: f32) -> f64 {
+    n.to_string().parse().unwrap_or_else(|_| f64::from(n))
 }
 
 fn within(solid: &Solid, hair: &[&Strands]) -> usize {

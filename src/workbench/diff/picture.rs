@@ -45,7 +45,12 @@ pub fn panels(
     for part in &changes.parts {
         (added, removed, moved) = (added + part.added, removed + part.removed, moved + part.moved);
     }
-    let about = format!("green: {added} added · red: {removed} removed · yellow to violet: {moved} moved · grey: the same");
+    let mut about = format!("green {added} added · red {removed} removed · grey the same");
+    if moved > 0 {
+        let most = changes.parts.iter().map(|p| p.max_distance).fold(0.0, f32::max);
+        let [(few, _), (half, _), _] = MOVED.map(|(fraction, colour)| (fraction * most, colour));
+        about += &format!(" · {moved} moved: yellow to {few:.2} cm, orange to {half:.2}, violet to {most:.2}");
+    }
     contact("what changed", &about, &cells, 3, before.look.background)
 }
 
