@@ -42,8 +42,12 @@ fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
 
 /// Runs the program: (exit code, standard output, standard error).
 fn coif(dir: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let Output { status, stdout, stderr } =
-        Command::new(env!("CARGO_BIN_EXE_coif")).args(arguments).current_dir(dir).stdin(Stdio::null()).output().unwrap();
+    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_coif"))
+        .args(arguments)
+        .current_dir(dir)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     (status.code().unwrap_or(-1), text(stdout), text(stderr))
 }
@@ -247,7 +251,7 @@ end)
 coif.test("last", function(t) t:ok(true) end)
 "#;
     let dir = folder(&[("a_test.lua", tests), ("b_test.lua", "coif.tset('x', print)"), ("c_test.lua", "local x = 1")]);
-    let (code, _, err) = coif(dir.path(), &["test", ".", "--time-limit", "1"]);
+    let (code, _, err) = coif(dir.path(), &["test", ".", "--time-limit", "3"]);
     assert_eq!(code, 1, "{err}");
     let expected = [
         ("expected `2`, got `1`", "a_test.lua:6:5"),
@@ -261,7 +265,7 @@ coif.test("last", function(t) t:ok(true) end)
         ("expected an error that says `pears`, got `apples`", "a_test.lua:15:5"),
         ("expected more than `2`, got `1`", "a_test.lua:17:"),
         ("attempt to index nil with 'x'", "a_test.lua:22:"),
-        ("`a_test.lua` ran longer than 1 s", ""),
+        ("`a_test.lua` ran longer than 3 s", ""),
         ("`coif` has no `tset`", "b_test.lua:1:6"),
         ("`c_test.lua` has no test", ""),
     ];

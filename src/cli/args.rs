@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 
 use super::proof::{DiffArguments, SheetArguments, TestArguments};
+use super::show::Show;
 use crate::export::StrandForm;
 use crate::head::load::Unit;
 use crate::scene::{Background, View};
@@ -33,6 +34,8 @@ Exit status:
 pub enum Command {
     /// Run a script; write its picture and its GLB
     Run(Box<RunArguments>),
+    /// Run a script, and again whenever it or a file that it asked for is saved
+    Watch(Box<WatchArguments>),
     /// List the parameters of a script
     Params(ParamsArguments),
     /// Draw variations of a style on one contact sheet
@@ -106,9 +109,25 @@ pub struct RunArguments {
     /// Tell the time of every call of the script
     #[arg(long)]
     pub timings: bool,
+    /// Draw the picture in the terminal [auto, kitty, iterm, sixel, half]
+    #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_parser = show)]
+    pub show: Option<Show>,
     /// Print errors and warnings only
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// `coif watch`.
+#[derive(Args, Debug)]
+pub struct WatchArguments {
+    #[command(flatten)]
+    pub run: RunArguments,
+    /// Look at the files regularly, for file systems that tell nothing (network, containers)
+    #[arg(long)]
+    pub poll: bool,
+    /// Print one JSON object per event on standard output, and nothing else
+    #[arg(long, conflicts_with = "show")]
+    pub json: bool,
 }
 
 /// `coif params`.
@@ -163,6 +182,10 @@ fn unit(text: &str) -> Result<Unit, String> {
 
 fn form(text: &str) -> Result<StrandForm, String> {
     choice(text, StrandForm::TEXTS, StrandForm::parse)
+}
+
+fn show(text: &str) -> Result<Show, String> {
+    choice(text, Show::TEXTS, Show::parse)
 }
 
 #[cfg(test)]

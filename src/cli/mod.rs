@@ -4,9 +4,12 @@
 
 mod args;
 mod barrier;
+mod progress;
 mod proof;
 mod proof_text;
+mod show;
 mod text;
+mod watch;
 
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
@@ -21,6 +24,8 @@ use crate::script::{self, Disk, Ending, Outcome, show_all};
 use crate::workbench::{self, RunError, RunOptions};
 
 use args::{Arguments, Command, ParamsArguments, RunArguments, ScriptArguments};
+use progress::Progress;
+use show::Show;
 
 /// Done.
 const DONE: u8 = 0;
@@ -48,6 +53,7 @@ pub fn main() -> ExitCode {
     };
     ExitCode::from(match arguments.command {
         Command::Run(run) => command_run(&run),
+        Command::Watch(arguments) => watch::watch(&arguments),
         Command::Params(params) => command_params(&params),
         Command::Sheet(sheet) => proof::command_sheet(&sheet),
         Command::Test(test) => proof::command_test(&test),
@@ -55,8 +61,8 @@ pub fn main() -> ExitCode {
     })
 }
 
-fn command_run(arguments: &RunArguments) -> u8 {
-    let options = RunOptions {
+fn run_options(arguments: &RunArguments) -> RunOptions {
+    RunOptions {
         script: script_options(&arguments.script),
         out: arguments.out.clone(),
         debug: arguments.debug,
@@ -67,16 +73,28 @@ fn command_run(arguments: &RunArguments) -> u8 {
         tolerance: arguments.tolerance,
         guides: arguments.guides && arguments.strands != StrandForm::None,
         count_inside: arguments.stats,
-    };
-    let report = match barrier::run(&arguments.script, move |task| workbench::run(&options, Arc::new(Disk), task)) {
+    }
+}
+
+fn command_run(arguments: &RunArguments) -> u8 {
+    let options = run_options(arguments);
+    let progress = Arc::new(Progress::new(!arguments.quiet));
+    let bar = Arc::clone(&progress);
+    let report = match barrier::run(&arguments.script, move |task| {
+        workbench::run(&options, Arc::new(Disk), &bar.listen(task))
+    }) {
         Ok(report) => report,
         Err(code) => return code,
     };
+    progress.end();
     tell(&report.outcome);
     match &report.written {
         Ok(written) => {
             if !arguments.quiet {
                 say(&text::summary(&report, written, arguments.timings));
+            }
+            if let Some(protocol) = arguments.show.and_then(Show::protocol) {
+                let _ = std::io::stderr().write_all(&show::picture(written, protocol, 2));
             }
             if arguments.stats {
                 print(&text::stats(&report, written));

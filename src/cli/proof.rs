@@ -171,11 +171,8 @@ pub fn command_sheet(arguments: &SheetArguments) -> u8 {
 
 /// Runs `coif test`.
 pub fn command_test(arguments: &TestArguments) -> u8 {
-    let script = Options {
-        allow: arguments.allow.clone(),
-        time_limit: arguments.time_limit,
-        ..Options::new(&arguments.path)
-    };
+    let script =
+        Options { allow: arguments.allow.clone(), time_limit: arguments.time_limit, ..Options::new(&arguments.path) };
     let options = TestOptions {
         path: arguments.path.clone(),
         filter: arguments.filter.clone(),
@@ -216,7 +213,7 @@ pub fn command_test(arguments: &TestArguments) -> u8 {
             say(&format!("error: `--junit {}` is not a file's name\n", path.display()));
             return USAGE;
         };
-        if let Err(error) = write_all(&folder, &[Output { name, bytes: junit(&report).into_bytes() }]) {
+        if let Err(error) = write_all(&folder, &[Output { name, bytes: junit(&report).into_bytes().into() }]) {
             say(&format!("error: {error}\n"));
             return WRITE;
         }

@@ -124,8 +124,7 @@ fn part_change(part: &PartChange) -> String {
 
 /// What changed, as one JSON object.
 pub fn changes_json(changes: &Changes, written: &[Written]) -> String {
-    let files: Vec<_> =
-        written.iter().map(|f| json!({ "path": f.path.to_string_lossy(), "bytes": f.bytes })).collect();
+    let files: Vec<_> = written.iter().map(|f| json!({ "path": f.path.to_string_lossy(), "bytes": f.bytes })).collect();
     let object = json!({
         "same": changes.is_empty(),
         "parameters": changes.parameters,

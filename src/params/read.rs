@@ -142,7 +142,9 @@ impl Reader {
                 return Some(read);
             }
             let unit = field.unit.map(|u| format!(" {u}")).unwrap_or_default();
-            reader.problem(format!("`{n}` is out of range"), Some(format!("it takes {lo} to {hi}{unit}")))
+            // An upper end that no one reaches only says "no limit here": what it costs is told elsewhere.
+            let takes = if hi >= 1e12 { format!("{lo} or more{unit}") } else { format!("{lo} to {hi}{unit}") };
+            reader.problem(format!("`{n}` is out of range"), Some(format!("it takes {takes}")))
         };
         if field.is_positional { read(self) } else { self.inside(field.name, read) }
     }

@@ -348,6 +348,7 @@ mod tests {
         let s = read::<Sample>(&t).unwrap();
         assert_eq!((s.length, s.way, s.direction.0), (3.0, Way::Down, Vec3::Y));
         assert_eq!(s.turn.unwrap().radians, std::f32::consts::FRAC_PI_2);
+        assert!(s.list.is_empty());
     }
 
     #[test]

@@ -11,6 +11,7 @@ use std::time::Duration;
 use mlua::Lua;
 
 use super::files::{Access, Files};
+use super::memo::Origin;
 use super::{Diagnostic, Options, Parameter, Sources};
 use crate::head::Head;
 use crate::task::Task;
@@ -55,6 +56,9 @@ pub struct Timing {
     pub source: String,
     /// How long it took.
     pub time: Duration,
+    /// Whether the memo had what is worth keeping of it; none where there is nothing worth keeping. A call with several
+    /// such parts was computed when any of them was.
+    pub origin: Option<Origin>,
 }
 
 /// The state of one run, shared by all bindings.

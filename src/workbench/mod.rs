@@ -5,12 +5,15 @@
 
 pub mod diff;
 mod figures;
+mod keep;
 mod output;
 mod run;
 pub mod sheet;
+pub mod terminal;
 pub mod test;
 pub mod variations;
+pub mod watch;
 
 pub use figures::{PartFigures, figures};
 pub use output::{Output, WriteError, Written, write_all};
-pub use run::{Report, RunError, RunOptions, Stage, run};
+pub use run::{Report, RunError, RunOptions, Stage, exports, preview, run};

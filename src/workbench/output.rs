@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A file to be written.
 #[derive(Clone, Debug)]
@@ -9,7 +10,7 @@ pub struct Output {
     /// Name within the output folder.
     pub name: String,
     /// Its content.
-    pub bytes: Vec<u8>,
+    pub bytes: Arc<Vec<u8>>,
 }
 
 /// A file that was written.
@@ -76,7 +77,7 @@ mod tests {
     use super::*;
 
     fn output(name: &str) -> Output {
-        Output { name: name.into(), bytes: b"new".to_vec() }
+        Output { name: name.into(), bytes: Arc::new(b"new".to_vec()) }
     }
 
     #[test]

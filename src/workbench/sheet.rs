@@ -69,7 +69,7 @@ pub fn contact_sheet(
         if task.is_cancelled() {
             return Err(RunError::Cancelled);
         }
-        Ok(write_all(&options.out, &[Output { name: format!("{name}.sheet.png"), bytes }])?)
+        Ok(write_all(&options.out, &[Output { name: format!("{name}.sheet.png"), bytes: bytes.into() }])?)
     });
     report
 }

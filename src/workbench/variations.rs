@@ -137,7 +137,8 @@ mod tests {
 
     #[test]
     fn what_is_none_is_refused() {
-        for bad in ["length", "=1..3", "a=", "a=1,,2", "a=1..x", "a=1..2:0", "a=1..2:-1", "a=2..1", "a=0..1:1e-9", "a=1..inf"]
+        for bad in
+            ["length", "=1..3", "a=", "a=1,,2", "a=1..x", "a=1..2:0", "a=1..2:-1", "a=2..1", "a=0..1:1e-9", "a=1..inf"]
         {
             assert!(Variation::parse(bad).is_err(), "{bad}");
         }

@@ -102,12 +102,8 @@ fn draw(call: &Call, tested: &Tested, options: &PreviewOptions) -> Result<Pictur
     let views = if options.views.is_empty() { &scene.views[..scene.views.len().min(1)] } else { &options.views };
     let views = if views.is_empty() { &[View::Front] } else { views };
     let sights: Vec<Mat3> = views.iter().map(|&v| camera::axes(v)).collect();
-    let sheet = SheetOptions {
-        width: options.size,
-        height: options.size * 9 / 8,
-        lettering: false,
-        ..SheetOptions::default()
-    };
+    let sheet =
+        SheetOptions { width: options.size, height: options.size * 9 / 8, lettering: false, ..SheetOptions::default() };
     let failed = |e: render::RenderError| call.problem(e.to_string(), None);
     let pictures = render::views(&scene, &sights, None, &sheet, call.task()).map_err(failed)?;
     Ok(render::contact::row(&pictures))

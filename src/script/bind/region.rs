@@ -9,7 +9,9 @@ use super::head::give;
 use crate::geometry::Root;
 use crate::groom::{GuideOptions, Guides};
 use crate::head::{Head, Parting, Region, roots, roots_by_density};
+use crate::math::Digest;
 use crate::params::{Function, Object, Value};
+use crate::task::Warned;
 
 /// A region together with its head and its partings.
 #[derive(Clone, Debug)]
@@ -30,6 +32,27 @@ impl Area {
     /// Without partings.
     pub fn new(head: Arc<Head>, region: Region) -> Self {
         Self { head, region, partings: vec![] }
+    }
+
+    /// So many roots on it, or by their density.
+    ///
+    /// # Errors
+    /// Counts that make no sense, an empty region, cancelling.
+    pub fn roots(&self, call: &Call, count: usize, density: Option<f32>, seed: u64) -> Result<Arc<Vec<Root>>> {
+        let (head, region, task) = (&self.head, &self.region, call.task());
+        let mut key = Digest::new("roots 1");
+        match density {
+            Some(density) => key.number(0).floats(&[density]),
+            None => key.number(1).number(count as u64),
+        };
+        region.digest(key.key(head.key()).number(seed));
+        call.memo(&key, || {
+            let found = match density {
+                Some(density) => roots_by_density(head, region, density, seed, task),
+                None => roots(head, region, count, seed, task),
+            };
+            found.map(Warned::clean).map_err(|e| call.problem(e.to_string(), e.hint()))
+        })
     }
 
     fn with(&self, region: Region) -> Self {
@@ -129,13 +152,9 @@ fn guides(call: &Call) -> Result<Value> {
     let area = call.this::<Area>()?;
     let (mut options, density) = call.read_both::<GuideOptions, GuideDensity>()?;
     options.seed = call.seed(options.seed);
-    let roots = match density.density {
-        Some(density) => roots_by_density(&area.head, &area.region, density, options.seed, call.task()),
-        None => roots(&area.head, &area.region, options.count, options.seed, call.task()),
-    };
-    let roots = roots.map_err(|e| call.problem(e.to_string(), e.hint()))?;
+    let roots = area.roots(call, options.count, density.density, options.seed)?;
     options.check(&roots).map_err(|e| call.problem(e.to_string(), None))?;
-    let guides = Guides { roots, options, source: call.source() };
+    let guides = Guides { roots: Vec::clone(&roots), options, source: call.source() };
     Ok(give(Seedlings { guides, area: Area::clone(&area) }))
 }
 

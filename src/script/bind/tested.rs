@@ -95,8 +95,7 @@ impl Object for TestPart {
     const NAME: &'static str = "TestPart";
 }
 
-const FIGURES: &str =
-    "Figures. Of hair: `strands`, `points`, `guides`, `mean_length`, `longest`, `shortest` (cm), `inside` (strands with a \
+const FIGURES: &str = "Figures. Of hair: `strands`, `points`, `guides`, `mean_length`, `longest`, `shortest` (cm), `inside` (strands with a \
      node or a segment inside the head), `coverage` (the fraction of the scalp within 1 cm of a strand), `symmetry` (mean \
      distance in cm from the hair's mirror image to the hair). Of a surface: `points`, `triangles`. Of both: `min` and \
      `max`, the corners of the bounding box.";
@@ -235,9 +234,9 @@ impl Tested {
     pub fn from(call: &Call, value: &Value, path: &str) -> Result<Arc<Self>> {
         if let Value::Handle(handle) = value {
             if let Some(style) = handle.get::<Style>() {
-                return style.tested(call.lua()).map_err(|e| {
-                    Raised::inside(&e).unwrap_or_else(|| call.problem_at(path, e.to_string(), None))
-                });
+                return style
+                    .tested(call.lua())
+                    .map_err(|e| Raised::inside(&e).unwrap_or_else(|| call.problem_at(path, e.to_string(), None)));
             }
             if let Some(scene) = handle.get::<Scene>() {
                 return Ok(Arc::new(Self::new(scene, heads(call.session))));

@@ -165,7 +165,7 @@ fn compared(
     let (a, b) = (options.before.name(), options.after.name());
     let name = if a == b { format!("{a}.diff.png") } else { format!("{a}_{b}.diff.png") };
     let bytes = png::encode(&sheet, Speed::Balanced)?;
-    Ok((changes, write_all(out, &[Output { name, bytes }])?))
+    Ok((changes, write_all(out, &[Output { name, bytes: bytes.into() }])?))
 }
 
 /// Notes a value that differs.

@@ -37,8 +37,7 @@ impl Goldens {
             None => None,
             Some(before) => {
                 let at = before.map(|p| format!(" at {}:{}", p.file, p.line)).unwrap_or_default();
-                let mut error =
-                    Diagnostic::error(format!("another test{at} has a preview `{}` too", preview.name));
+                let mut error = Diagnostic::error(format!("another test{at} has a preview `{}` too", preview.name));
                 error.place.clone_from(&preview.place);
                 Some(error.hint("give each golden picture of a folder one test"))
             }

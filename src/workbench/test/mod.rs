@@ -199,8 +199,7 @@ pub fn test(
             continue;
         }
         for (number, test) in declared.into_iter().enumerate() {
-            let is_wanted =
-                |f: &String| test.name.contains(f.as_str()) || file.to_string_lossy().contains(f.as_str());
+            let is_wanted = |f: &String| test.name.contains(f.as_str()) || file.to_string_lossy().contains(f.as_str());
             if !options.filter.as_ref().is_none_or(is_wanted) {
                 report.left_out += 1;
                 goldens.is_complete = false;
@@ -227,7 +226,7 @@ pub fn test(
                 if preview.is_same {
                     continue;
                 }
-                let bytes = |picture| png::encode(picture, Speed::Balanced).unwrap_or_default();
+                let bytes = |picture| Arc::new(png::encode(picture, Speed::Balanced).unwrap_or_default());
                 if options.accept {
                     let name = format!("{}.png", preview.name);
                     let folder = preview.golden.parent().unwrap_or(Path::new("."));
