@@ -11,6 +11,7 @@ use glam::Vec3;
 use super::super::call::{Call, Result};
 use super::super::files::AccessError;
 use super::super::registry::{Entry, Getter, Noun};
+use super::super::session::Session;
 use super::region::Area;
 use crate::geometry::OrientedBox;
 use crate::head::load::{self, Axis, FileBytes, LoadError, LoadOptions, Unit};
@@ -223,10 +224,17 @@ fn head(call: &Call) -> Result<Value> {
     Ok(Value::Handle(Handle::new(head)))
 }
 
+static ADULT: OnceLock<Arc<Head>> = OnceLock::new();
+static CARTOON: OnceLock<Arc<Head>> = OnceLock::new();
+
+/// Every head that a run can have used: those it made, and the mannequins.
+pub fn heads(session: &Session) -> Vec<Arc<Head>> {
+    let made = session.heads.borrow();
+    made.values().chain(ADULT.get()).chain(CARTOON.get()).map(Arc::clone).collect()
+}
+
 /// A mannequin; made once per process, for it depends on nothing.
 fn built_in(call: &Call, style: Style) -> Result<Arc<Head>> {
-    static ADULT: OnceLock<Arc<Head>> = OnceLock::new();
-    static CARTOON: OnceLock<Arc<Head>> = OnceLock::new();
     let made = match style {
         Style::Adult => &ADULT,
         Style::Cartoon => &CARTOON,
