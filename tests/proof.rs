@@ -212,6 +212,14 @@ fn golden_pictures_are_kept_and_compared() {
     std::fs::write(&golden, &kept[..kept.len() / 2]).unwrap();
     let (code, _, err) = test(&[]);
     assert!(code == 1 && err.contains("is no PNG picture"), "{err}");
+
+    // Two tests cannot keep one picture.
+    std::fs::write(&golden, &kept).unwrap();
+    std::fs::write(dir.path().join("style_test.lua"), format!("{TEST}{}", TEST.replace("test(\"", "test(\"again ")))
+        .unwrap();
+    let (code, _, err) = test(&[]);
+    assert!(code == 1 && err.contains("another test at style_test.lua:8 has a preview `style` too"), "{err}");
+    assert!(err.contains("3 passed, 1 failed"), "{err}");
 }
 
 #[test]
