@@ -38,6 +38,10 @@ pub enum Command {
     Watch(Box<WatchArguments>),
     /// List the parameters of a script
     Params(ParamsArguments),
+    /// Make a folder with a new style, a test of it and settings for the editor
+    New(NewArguments),
+    /// Write the definitions for editors and the reference of all functions
+    Api(ApiArguments),
     /// Draw variations of a style on one contact sheet
     Sheet(Box<SheetArguments>),
     /// Run scripted tests of styles, *_test.lua
@@ -138,6 +142,22 @@ pub struct ParamsArguments {
     /// Print JSON instead of a table
     #[arg(long)]
     pub json: bool,
+}
+
+/// `coif new`.
+#[derive(Args, Debug)]
+pub struct NewArguments {
+    /// Folder to make; its last part is the style's name
+    #[arg(value_name = "NAME")]
+    pub folder: PathBuf,
+}
+
+/// `coif api`.
+#[derive(Args, Debug)]
+pub struct ApiArguments {
+    /// Folder for `coif.lua`, the library and the pages
+    #[arg(short, long, value_name = "DIR", default_value = crate::workbench::DEFINITIONS)]
+    pub out: PathBuf,
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {

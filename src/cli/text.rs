@@ -1,6 +1,7 @@
 //! What a finished run says.
 
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use serde_json::{Value, json};
@@ -43,6 +44,17 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
     for file in written {
         let _ = writeln!(out, "{:>8}  {} ({})", "wrote", file.path.display(), size(file.bytes));
     }
+    out
+}
+
+/// What `coif new` made, and how to go on.
+pub fn made(folder: &Path, files: &[PathBuf]) -> String {
+    let mut out = String::new();
+    for file in files {
+        let _ = writeln!(out, "{:>8}  {}", "wrote", file.display());
+    }
+    let style = files.first().and_then(|f| f.file_name()).map(|f| f.to_string_lossy()).unwrap_or_default();
+    let _ = writeln!(out, "{:>8}  cd {} && coif run {style}", "next", folder.display());
     out
 }
 

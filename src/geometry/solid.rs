@@ -152,6 +152,12 @@ impl Solid {
         self.cells.get_or_init(|| Cells::build(self)).clearance(p)
     }
 
+    /// True only if the whole segment from `a` to `b` is outside; false means "ask [`Solid::segment_hit`]".
+    pub fn is_surely_outside(&self, a: Vec3, b: Vec3) -> bool {
+        let cells = self.cells.get_or_init(|| Cells::build(self));
+        cells.is_free(a, b) || cells.is_free(b, a)
+    }
+
     /// Where the segment from `a` to `b` first meets the surface.
     pub fn segment_hit(&self, a: Vec3, b: Vec3) -> Option<Hit> {
         self.bvh.segment_hit(a, b)
@@ -311,20 +317,22 @@ impl Cells {
         };
         let mut cells = vec![Cell::default(); counts.iter().product()];
         let mut planes = Vec::new();
-        let mut level: Vec<(u32, Vec3)> = (0..cells.len()).map(|i| (i as u32, centre(i))).collect();
+        // Cells to be asked for: index, centre, and no less than their distance.
+        let mut level: Vec<(u32, Vec3, f32)> =
+            (0..cells.len()).map(|i| (i as u32, centre(i), f32::MAX.sqrt())).collect();
         let mut half = size * 0.5;
         for depth in 0..=Self::LEVELS {
             // The half diagonal is where the first bound turns useless at the cell's corners.
             let is_near = |d: f32| d.abs() < 1.25 * half * 3.0_f32.sqrt();
             let found: Vec<(f32, Option<(Vec3, f32)>)> = (level.par_iter())
-                .map(|&(_, c)| {
-                    let near = solid.closest(c);
+                .map(|&(_, c, most)| {
+                    let near = solid.closest_within(c, most).unwrap_or_else(|| solid.closest(c));
                     let is_last = depth == Self::LEVELS && is_near(near.distance);
                     (near.distance, if is_last { plane(solid, c, half, &near) } else { None })
                 })
                 .collect();
             let mut below = Vec::new();
-            for (&(cell, c), &(distance, plane)) in level.iter().zip(&found) {
+            for (&(cell, c, _), &(distance, plane)) in level.iter().zip(&found) {
                 let cell = cell as usize;
                 cells[cell].distance = distance;
                 if let Some(plane) = plane {
@@ -337,7 +345,8 @@ impl Cells {
                     cells.extend([Cell::default(); 8]);
                     below.extend((0..8).map(|k| {
                         let sign = |bit: u32| if k >> bit & 1 == 1 { 0.5 } else { -0.5 };
-                        (first + k, c + Vec3::new(sign(0), sign(1), sign(2)) * half)
+                        let most = distance.abs() + 0.26 * Self::reach(half);
+                        (first + k, c + Vec3::new(sign(0), sign(1), sign(2)) * half, most)
                     }));
                 }
             }
@@ -347,32 +356,56 @@ impl Cells {
         Self { bounds, size, counts, cells, planes }
     }
 
-    fn clearance(&self, p: Vec3) -> f32 {
+    /// The cell of `p`, its centre, and half its edge; none outside of all.
+    fn find(&self, p: Vec3) -> Option<(Cell, Vec3, f32)> {
         let cell = (p - self.bounds.min) / self.size;
         let limit = Vec3::new(self.counts[0] as f32, self.counts[1] as f32, self.counts[2] as f32);
         if !(cell.cmpge(Vec3::ZERO).all() && cell.cmplt(limit).all()) {
-            // Outside the box the box itself is the bound; NaN gives 0: "ask".
-            let out = (p - p.clamp(self.bounds.min, self.bounds.max)).length();
-            return if out > 0.0 { out } else { 0.0 };
+            return None;
         }
         let [x, y, z] = cell.to_array().map(|c| c as usize);
         let mut at = x + self.counts[0] * (y + self.counts[1] * z);
         let mut c = self.bounds.min + (Vec3::new(x as f32, y as f32, z as f32) + 0.5) * self.size;
-        let mut quarter = self.size * 0.25;
+        let mut half = self.size * 0.5;
         loop {
             let cell = self.cells[at];
             if cell.first == 0 {
-                let bound = cell.distance - p.distance(c);
-                return match self.planes.get((cell.plane as usize).wrapping_sub(1)) {
-                    Some(&(normal, height)) => bound.max(normal.dot(p) - height),
-                    None => bound,
-                };
+                return Some((cell, c, half));
             }
             let above = p.cmpge(c);
             at = cell.first as usize + above.bitmask() as usize;
-            c += Vec3::select(above, Vec3::splat(quarter), Vec3::splat(-quarter));
-            quarter *= 0.5;
+            half *= 0.5;
+            c += Vec3::select(above, Vec3::splat(half), Vec3::splat(-half));
         }
+    }
+
+    fn plane(&self, cell: &Cell) -> Option<(Vec3, f32)> {
+        self.planes.get((cell.plane as usize).wrapping_sub(1)).copied()
+    }
+
+    fn clearance(&self, p: Vec3) -> f32 {
+        let Some((cell, c, _)) = self.find(p) else {
+            // Outside the box the box itself is the bound; NaN gives 0: "ask".
+            let out = (p - p.clamp(self.bounds.min, self.bounds.max)).length();
+            return if out > 0.0 { out } else { 0.0 };
+        };
+        let bound = cell.distance - p.distance(c);
+        self.plane(&cell).map_or(bound, |(normal, height)| bound.max(normal.dot(p) - height))
+    }
+
+    /// True when both ends are over the plane of the first one's cell and in the ball that it is good for: then so is
+    /// all between them.
+    fn is_free(&self, p: Vec3, q: Vec3) -> bool {
+        let Some((cell, c, half)) = self.find(p) else { return false };
+        self.plane(&cell).is_some_and(|(normal, height)| {
+            let reach = cell.distance.abs() + Self::reach(half);
+            q.distance_squared(c) <= reach * reach && normal.dot(p) > height && normal.dot(q) > height
+        })
+    }
+
+    /// How much farther than its centre's the closest place of any point of a cell may be from its centre.
+    fn reach(half: f32) -> f32 {
+        2.0 * half * 3.0_f32.sqrt()
     }
 }
 
@@ -381,7 +414,7 @@ impl Cells {
 fn plane(solid: &Solid, c: Vec3, half: f32, near: &SurfacePoint) -> Option<(Vec3, f32)> {
     let outward = (c - near.position) * near.distance.signum();
     let normal = if near.distance.abs() > 1e-3 * half { outward.normalize_or(near.normal) } else { near.normal };
-    let reach = (near.distance.abs() + 2.0 * half * 3.0_f32.sqrt()) * 1.0001;
+    let reach = (near.distance.abs() + Cells::reach(half)) * 1.0001;
     let height = solid.bvh.support_within(c, reach, normal);
     // A little higher, for rounding.
     let height = height + 1e-5 * (height.abs() + reach);
@@ -457,15 +490,20 @@ mod tests {
         for mesh in [star, plates] {
             let solid = Solid::new(&mesh).unwrap();
             let (key, bounds) = (Key::new(5, "bound"), solid.bounds().grown(0.3));
-            let mut positive = 0;
+            let (mut positive, mut sure) = (0, 0);
             for i in 0..20_000 {
                 let u = Vec3::new(key.with(i).unit(), key.with(i).with(1).unit(), key.with(i).with(2).unit());
                 let p = bounds.min + bounds.size() * u;
                 let (bound, distance) = (solid.clearance(p), solid.signed_distance(p));
                 positive += u32::from(bound > 0.0);
                 assert!(bound <= distance.max(0.0) + 1e-5, "{p}: {bound} against {distance}");
+                let q = p + key.with(i).with(3).direction() * 0.8;
+                if solid.is_surely_outside(p, q) {
+                    sure += 1;
+                    assert!(distance > 0.0 && solid.segment_hit(p, q).is_none(), "{p} to {q}");
+                }
             }
-            assert!(positive > 5000, "{positive}");
+            assert!(positive > 5000 && sure > 100, "{positive} {sure}");
         }
     }
 

@@ -4,6 +4,7 @@
 //! an entry of the [`registry`]; bindings ([`bind`](self)) see plain data and the core, hardly any Lua. Whatever goes
 //! wrong becomes [`Diagnostic`]s with place, mark, trace and hint.
 
+pub mod api;
 mod bind;
 mod call;
 mod convert;

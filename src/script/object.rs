@@ -72,7 +72,7 @@ fn call(lua: &Lua, this: &AnyUserData, args: mlua::MultiValue) -> mlua::Result<m
 }
 
 /// Signs between two values, and the methods they stand for.
-const OPERATORS: &[(MetaMethod, &str, &str)] =
+pub const OPERATORS: &[(MetaMethod, &str, &str)] =
     &[(MetaMethod::Add, "+", "union"), (MetaMethod::Sub, "-", "minus"), (MetaMethod::Mul, "*", "intersect")];
 
 /// `a + b`, where the first has a method for it.

@@ -6,6 +6,7 @@
 pub mod diff;
 mod figures;
 mod keep;
+mod new;
 mod output;
 mod run;
 pub mod sheet;
@@ -15,5 +16,6 @@ pub mod variations;
 pub mod watch;
 
 pub use figures::{PartFigures, figures};
+pub use new::{DEFINITIONS, NewError, api, new};
 pub use output::{Output, WriteError, Written, write_all};
 pub use run::{Report, RunError, RunOptions, Stage, exports, preview, run};

@@ -38,7 +38,7 @@ crate::params! {
         /// Only these groups, objects or materials of the file; everything when left out.
         groups: Vec<String> = vec![];
         /// Landmarks by name, in the file's own axes and unit, instead of those found from the shape.
-        landmarks: Value = Value::Table(Table::default());
+        landmarks: Value = Value::Table(Table::default()), takes("table<string, Point>");
     }
 }
 
@@ -46,7 +46,7 @@ crate::params! {
     /// A landmark plus an offset in cm (to the head's left, up, to the front) that grows with the head.
     pub struct AtFields("Head:at") {
         /// `vertex`, `forehead`, `left_temple`, `right_temple`, `left_ear`, `right_ear`, `occiput`, `nape`, `chin`.
-        landmark: String;
+        landmark: String, choices(&Landmarks::NAMES);
         /// From there, for an adult's head.
         offset: Vec3 = Vec3::ZERO, unit("cm");
     }
@@ -56,7 +56,7 @@ crate::params! {
     /// A half of the space about the head, or all of it, as a box.
     pub struct BoxFields("Head:box") {
         /// `all`, `behind`, `front`, `left`, `right`, `above`, `below` the ears.
-        name: String;
+        name: String, choices(&Head::BOXES);
     }
 }
 

@@ -22,7 +22,7 @@ use mlua::Lua;
 
 use super::call::invoke;
 use super::convert::to_lua;
-use super::registry::{Entry, Registry, registry as language};
+use super::registry::{Constant, Entry, Registry, registry as language};
 use super::session::session;
 use super::strict;
 use crate::params::{Table, Value};
@@ -48,6 +48,13 @@ pub fn registry() -> Registry {
         constants: constants::constants(),
     }
 }
+
+/// The run's seed; what it is without `--seed`.
+pub const SEED: Constant = Constant {
+    name: "coif.seed",
+    doc: "The seed of this run, from `--seed`; 0 without it.",
+    value: || Value::Number(0.0),
+};
 
 /// A list as a value.
 fn list(items: impl IntoIterator<Item = Value>) -> Value {
@@ -101,7 +108,7 @@ fn install_all(lua: &Lua, more: &'static [Entry]) -> mlua::Result<()> {
         put(constant.name, to_lua(lua, &(constant.value)())?)?;
     }
     let seed = session(lua)?.options.seed;
-    put("coif.seed", mlua::Value::Number(seed as f64))?;
+    put(SEED.name, mlua::Value::Number(seed as f64))?;
     for (path, table) in &folders {
         strict::seal(lua, table, &format!("`{path}`"))?;
     }
