@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use coif::head::mannequin::{self, Style};
-use coif::script::{Ending, Memory, Options, run, show_all};
+use coif::script::{Ending, Memory, Options, TestOutcome, run, run_test, show_all};
 use coif::task::Task;
 
 /// A block of Lua.
@@ -87,6 +87,9 @@ fn anna() -> String {
 
 /// Runs a script with few strands; what is wrong with it, if anything.
 fn problem(name: &str, text: &str, files: &Memory) -> Option<String> {
+    if text.contains("coif.test(") {
+        return untrue(name, text, files);
+    }
     let mut options = Options::new(name);
     let words: Vec<&str> = text.split_whitespace().collect();
     if text.contains("coif.params") && words.windows(3).any(|w| w[..2] == ["strands", "="] && !w[2].starts_with("p.")) {
@@ -101,9 +104,22 @@ fn problem(name: &str, text: &str, files: &Memory) -> Option<String> {
     }
 }
 
+/// Runs the tests in a snippet: what fails, if anything.
+fn untrue(name: &str, text: &str, files: &Memory) -> Option<String> {
+    let run = |wanted| run_test(&Options::new(name), wanted, Arc::new(files.clone().with(name, text)), &Task::new());
+    let listing = run(None);
+    assert!(!listing.declared.is_empty() || !listing.failures.is_empty(), "{text}");
+    let told = |outcome: &TestOutcome| show_all(&outcome.failures, &outcome.sources, false);
+    let all = (0..listing.declared.len()).map(|i| told(&run(Some(i))));
+    let told: String = std::iter::once(told(&listing)).chain(all).collect();
+    (!told.is_empty()).then_some(told)
+}
+
 #[test]
 fn every_snippet_runs() {
-    let files = Memory::default().with("anna.obj", anna());
+    // What the snippets speak of.
+    let files =
+        Memory::default().with("anna.obj", anna()).with("ponytail.lua", include_str!("../examples/ponytail.lua"));
     let (mut problems, mut count) = (vec![], 0);
     for page in pages() {
         let text = std::fs::read_to_string(&page).unwrap();

@@ -76,6 +76,12 @@ fn noun(out: &mut String, registry: &Registry, noun: &Noun) {
             one_line(getter.doc)
         );
     }
+    if let Some(lookup) = noun.lookup {
+        let _ = writeln!(out, "---@field [string] {}", returned(registry, lookup.returns));
+    }
+    if let Some(with) = noun.methods.iter().find(|m| m.short_name() == "with") {
+        let _ = writeln!(out, "---@operator call(table<string, any>): {}", returned(registry, with.returns));
+    }
     for (_, sign, method) in OPERATORS {
         let word = match *sign {
             "+" => "add",
@@ -98,6 +104,9 @@ fn function(out: &mut String, registry: &Registry, entry: &Entry, name: &str) {
     let class = class(entry);
     if entry.shape == Shape::Table && !fields.is_empty() {
         table(out, registry, &class, &format!("{class}.fields"), &fields, &format!("What `{name}` takes."));
+    }
+    if entry.shape == Shape::Positional {
+        nested_tables(out, registry, &class, &fields);
     }
     out.push('\n');
     doc(out, entry.doc);
@@ -123,12 +132,7 @@ fn function(out: &mut String, registry: &Registry, entry: &Entry, name: &str) {
 
 /// The class of a table, after those of the tables in it.
 fn table(out: &mut String, registry: &Registry, owner: &str, class: &str, fields: &[Field], about: &str) {
-    for field in fields {
-        if let (Some(nested), Some(_)) = (field.nested, own_struct(registry, owner, &field.kind)) {
-            let inner = format!("{owner}.{}", field.name);
-            table(out, registry, &inner, &inner, &nested(), field.doc);
-        }
-    }
+    nested_tables(out, registry, owner, fields);
     out.push('\n');
     doc(out, about);
     let _ = writeln!(out, "---@class (exact) {class}");
@@ -141,6 +145,16 @@ fn table(out: &mut String, registry: &Registry, owner: &str, class: &str, fields
         };
         let takes = annotation(registry, owner, field);
         let _ = writeln!(out, "---@field {name} {takes} # {}{}", one_line(field.doc), limits(field));
+    }
+}
+
+/// The classes of tables in fields.
+fn nested_tables(out: &mut String, registry: &Registry, owner: &str, fields: &[Field]) {
+    for field in fields {
+        if let (Some(nested), Some(_)) = (field.nested, own_struct(registry, owner, &field.kind)) {
+            let inner = format!("{owner}.{}", field.name);
+            table(out, registry, &inner, &inner, &nested(), field.doc);
+        }
     }
 }
 

@@ -136,9 +136,9 @@ pub fn default(field: &Field) -> Option<String> {
     field.default.as_ref().filter(|d| !["", "nil", "\"\"", "{}"].contains(&d.as_str())).cloned()
 }
 
-/// Every function below `coif`.
+/// Every function below `coif`, those for tests last.
 pub fn functions(registry: &Registry) -> impl Iterator<Item = &Entry> {
-    registry.functions.iter()
+    registry.functions.iter().chain(&registry.test_functions)
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ crate::params! {
         /// What it shows, in a few words; unique within the file.
         name: String;
         /// Takes the Test, `t`, whose methods run styles and state what is expected.
-        body: Function;
+        body: Function, takes("(t: Test)");
     }
 }
 
@@ -44,9 +44,9 @@ crate::params! {
     /// Expects two numbers, or two vectors, to be no farther apart than the tolerance.
     pub struct NearFields("Test:near") {
         /// What there is.
-        got: Value;
+        got: Value, takes("number|Point");
         /// What there should be.
-        want: Value;
+        want: Value, takes("number|Point");
         /// How far apart they may be.
         tolerance: f32, range(0.0, 1e30);
     }
@@ -108,7 +108,7 @@ crate::params! {
     /// Expects a function to raise an error.
     pub struct ErrorFields("Test:error") {
         /// Called without arguments.
-        body: Function;
+        body: Function, takes("(): any");
         /// What the error must say, as a part of its message.
         text: Option<String>;
     }
