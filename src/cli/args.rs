@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::proof::{DiffArguments, SheetArguments, TestArguments};
 use super::show::Show;
 use crate::export::StrandForm;
 use crate::head::load::Unit;
@@ -37,6 +38,16 @@ pub enum Command {
     Watch(Box<WatchArguments>),
     /// List the parameters of a script
     Params(ParamsArguments),
+    /// Make a folder with a new style, a test of it and settings for the editor
+    New(NewArguments),
+    /// Write the definitions for editors and the reference of all functions
+    Api(ApiArguments),
+    /// Draw variations of a style on one contact sheet
+    Sheet(Box<SheetArguments>),
+    /// Run scripted tests of styles, *_test.lua
+    Test(TestArguments),
+    /// Tell what changed between two styles, or two versions of one
+    Diff(Box<DiffArguments>),
 }
 
 /// What is common to every command that runs a script.
@@ -133,6 +144,22 @@ pub struct ParamsArguments {
     pub json: bool,
 }
 
+/// `coif new`.
+#[derive(Args, Debug)]
+pub struct NewArguments {
+    /// Folder to make; its last part is the style's name
+    #[arg(value_name = "NAME")]
+    pub folder: PathBuf,
+}
+
+/// `coif api`.
+#[derive(Args, Debug)]
+pub struct ApiArguments {
+    /// Folder for `coif.lua`, the library and the pages
+    #[arg(short, long, value_name = "DIR", default_value = crate::workbench::DEFINITIONS)]
+    pub out: PathBuf,
+}
+
 fn assignment(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.to_owned())),
@@ -140,7 +167,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     }
 }
 
-fn seconds(text: &str) -> Result<Duration, String> {
+pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if seconds > 0.0 && seconds <= 1e6 {
         Ok(Duration::from_secs_f64(seconds))
@@ -161,11 +188,11 @@ fn choice<T>(text: &str, texts: &[&str], parse: fn(&str) -> Option<T>) -> Result
     })
 }
 
-fn background(text: &str) -> Result<Background, String> {
+pub(super) fn background(text: &str) -> Result<Background, String> {
     choice(text, Background::TEXTS, Background::parse)
 }
 
-fn view(text: &str) -> Result<View, String> {
+pub(super) fn view(text: &str) -> Result<View, String> {
     choice(text, View::TEXTS, View::parse)
 }
 

@@ -5,6 +5,8 @@
 mod args;
 mod barrier;
 mod progress;
+mod proof;
+mod proof_text;
 mod show;
 mod text;
 mod watch;
@@ -19,9 +21,9 @@ use clap::Parser;
 use crate::export::StrandForm;
 use crate::render::SheetOptions;
 use crate::script::{self, Disk, Ending, Outcome, show_all};
-use crate::workbench::{self, RunError, RunOptions};
+use crate::workbench::{self, NewError, RunError, RunOptions};
 
-use args::{Arguments, Command, ParamsArguments, RunArguments, ScriptArguments};
+use args::{ApiArguments, Arguments, Command, NewArguments, ParamsArguments, RunArguments, ScriptArguments};
 use progress::Progress;
 use show::Show;
 
@@ -53,6 +55,11 @@ pub fn main() -> ExitCode {
         Command::Run(run) => command_run(&run),
         Command::Watch(arguments) => watch::watch(&arguments),
         Command::Params(params) => command_params(&params),
+        Command::New(new) => command_new(&new),
+        Command::Api(api) => command_api(&api),
+        Command::Sheet(sheet) => proof::command_sheet(&sheet),
+        Command::Test(test) => proof::command_test(&test),
+        Command::Diff(diff) => proof::command_diff(&diff),
     })
 }
 
@@ -126,6 +133,32 @@ fn command_params(arguments: &ParamsArguments) -> u8 {
         }
         Ending::Failed => SCRIPT,
         Ending::Cancelled => CANCELLED,
+    }
+}
+
+fn command_new(arguments: &NewArguments) -> u8 {
+    match workbench::new(&arguments.folder) {
+        Ok(files) => {
+            say(&text::made(&arguments.folder, &files));
+            DONE
+        }
+        Err(error) => {
+            say(&format!("error: {error}\n"));
+            if matches!(error, NewError::Name(_)) { USAGE } else { WRITE }
+        }
+    }
+}
+
+fn command_api(arguments: &ApiArguments) -> u8 {
+    match workbench::api(&arguments.out) {
+        Ok(written) => {
+            say(&format!("{:>8}  {} files in {}\n", "wrote", written.len(), arguments.out.display()));
+            DONE
+        }
+        Err(error) => {
+            say(&format!("error: {error}\n"));
+            WRITE
+        }
     }
 }
 

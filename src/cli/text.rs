@@ -1,6 +1,7 @@
 //! What a finished run says.
 
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use serde_json::{Value, json};
@@ -43,6 +44,17 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
     for file in written {
         let _ = writeln!(out, "{:>8}  {} ({})", "wrote", file.path.display(), size(file.bytes));
     }
+    out
+}
+
+/// What `coif new` made, and how to go on.
+pub fn made(folder: &Path, files: &[PathBuf]) -> String {
+    let mut out = String::new();
+    for file in files {
+        let _ = writeln!(out, "{:>8}  {}", "wrote", file.display());
+    }
+    let style = files.first().and_then(|f| f.file_name()).map(|f| f.to_string_lossy()).unwrap_or_default();
+    let _ = writeln!(out, "{:>8}  cd {} && coif run {style}", "next", folder.display());
     out
 }
 
@@ -136,7 +148,7 @@ fn plain(value: &crate::params::Value) -> Value {
 }
 
 /// `40,000`.
-fn thousands(n: usize) -> String {
+pub(super) fn thousands(n: usize) -> String {
     let digits = n.to_string();
     let mut out = String::new();
     for (i, c) in digits.chars().enumerate() {
@@ -149,7 +161,7 @@ fn thousands(n: usize) -> String {
 }
 
 /// `412 ms`, `3.2 s`.
-fn milliseconds(time: Duration) -> String {
+pub(super) fn milliseconds(time: Duration) -> String {
     let seconds = time.as_secs_f64();
     if seconds < 0.01 {
         format!("{:.1} ms", seconds * 1e3)
@@ -161,7 +173,7 @@ fn milliseconds(time: Duration) -> String {
 }
 
 /// `812 kB`, `41.2 MB`.
-fn size(bytes: usize) -> String {
+pub(super) fn size(bytes: usize) -> String {
     match bytes {
         0..1_000 => format!("{bytes} B"),
         1_000..1_000_000 => format!("{:.0} kB", bytes as f64 / 1e3),

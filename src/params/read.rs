@@ -27,6 +27,10 @@ pub trait FieldType: Sized {
     fn unit() -> Option<&'static str> {
         None
     }
+    /// The fields, when it is a struct or a list of structs.
+    fn nested() -> Option<fn() -> Vec<Field>> {
+        None
+    }
     /// As a number, for the range check.
     fn number(&self) -> Option<f64> {
         None
@@ -142,9 +146,8 @@ impl Reader {
                 return Some(read);
             }
             let unit = field.unit.map(|u| format!(" {u}")).unwrap_or_default();
-            // An upper end that no one reaches only says "no limit here": what it costs is told elsewhere.
-            let takes = if hi >= 1e12 { format!("{lo} or more{unit}") } else { format!("{lo} to {hi}{unit}") };
-            reader.problem(format!("`{n}` is out of range"), Some(format!("it takes {takes}")))
+            let takes = field.interval().unwrap_or_default();
+            reader.problem(format!("`{n}` is out of range"), Some(format!("it takes {takes}{unit}")))
         };
         if field.is_positional { read(self) } else { self.inside(field.name, read) }
     }

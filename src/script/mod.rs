@@ -4,6 +4,7 @@
 //! an entry of the [`registry`]; bindings ([`bind`](self)) see plain data and the core, hardly any Lua. Whatever goes
 //! wrong becomes [`Diagnostic`]s with place, mark, trace and hint.
 
+pub mod api;
 mod bind;
 mod call;
 mod convert;
@@ -21,6 +22,7 @@ mod session;
 mod show;
 mod source;
 mod strict;
+mod testing;
 mod trace;
 
 #[cfg(test)]
@@ -34,3 +36,4 @@ pub use memo::{Kept, Memo, Origin};
 pub use session::Timing;
 pub use show::{show, show_all};
 pub use source::Sources;
+pub use testing::{Declared, Preview, TestOutcome, run_test};

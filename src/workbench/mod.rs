@@ -3,13 +3,19 @@
 //! Everything is made in memory first, written beside its place and renamed into it: a reader never sees half a file,
 //! and after an error the folder is as it was before.
 
+pub mod diff;
 mod figures;
 mod keep;
+mod new;
 mod output;
 mod run;
+pub mod sheet;
 pub mod terminal;
+pub mod test;
+pub mod variations;
 pub mod watch;
 
 pub use figures::{PartFigures, figures};
+pub use new::{DEFINITIONS, NewError, api, new};
 pub use output::{Output, WriteError, Written, write_all};
 pub use run::{Report, RunError, RunOptions, Stage, exports, preview, run};

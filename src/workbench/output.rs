@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// A file to be written.
 #[derive(Clone, Debug)]
 pub struct Output {
-    /// Name within the output folder.
+    /// Name within the output folder, with `/` when it lies in a folder there.
     pub name: String,
     /// Its content.
     pub bytes: Arc<Vec<u8>>,
@@ -48,6 +48,9 @@ pub fn write_all(folder: &Path, outputs: &[Output]) -> Result<Vec<Written>, Writ
         let path = folder.join(&output.name);
         if path.is_dir() {
             return Err(WriteError { path, error: io::Error::from(io::ErrorKind::IsADirectory) });
+        }
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent).map_err(failed(parent))?;
         }
         let mut file = beside(folder).map_err(failed(&path))?;
         file.write_all(&output.bytes).and_then(|()| file.flush()).map_err(failed(&path))?;

@@ -11,6 +11,7 @@ use glam::Vec3;
 use super::super::call::{Call, Result};
 use super::super::files::AccessError;
 use super::super::registry::{Entry, Getter, Noun};
+use super::super::session::Session;
 use super::region::Area;
 use crate::geometry::OrientedBox;
 use crate::head::load::{self, Axis, FileBytes, LoadError, LoadOptions, Unit};
@@ -37,7 +38,7 @@ crate::params! {
         /// Only these groups, objects or materials of the file; everything when left out.
         groups: Vec<String> = vec![];
         /// Landmarks by name, in the file's own axes and unit, instead of those found from the shape.
-        landmarks: Value = Value::Table(Table::default());
+        landmarks: Value = Value::Table(Table::default()), takes("table<string, Point>");
     }
 }
 
@@ -45,7 +46,7 @@ crate::params! {
     /// A landmark plus an offset in cm (to the head's left, up, to the front) that grows with the head.
     pub struct AtFields("Head:at") {
         /// `vertex`, `forehead`, `left_temple`, `right_temple`, `left_ear`, `right_ear`, `occiput`, `nape`, `chin`.
-        landmark: String;
+        landmark: String, choices(&Landmarks::NAMES);
         /// From there, for an adult's head.
         offset: Vec3 = Vec3::ZERO, unit("cm");
     }
@@ -55,7 +56,7 @@ crate::params! {
     /// A half of the space about the head, or all of it, as a box.
     pub struct BoxFields("Head:box") {
         /// `all`, `behind`, `front`, `left`, `right`, `above`, `below` the ears.
-        name: String;
+        name: String, choices(&Head::BOXES);
     }
 }
 
@@ -223,10 +224,17 @@ fn head(call: &Call) -> Result<Value> {
     Ok(Value::Handle(Handle::new(head)))
 }
 
+static ADULT: OnceLock<Arc<Head>> = OnceLock::new();
+static CARTOON: OnceLock<Arc<Head>> = OnceLock::new();
+
+/// Every head that a run can have used: those it made, and the mannequins.
+pub fn heads(session: &Session) -> Vec<Arc<Head>> {
+    let made = session.heads.borrow();
+    made.values().chain(ADULT.get()).chain(CARTOON.get()).map(Arc::clone).collect()
+}
+
 /// A mannequin; made once per process, for it depends on nothing.
 fn built_in(call: &Call, style: Style) -> Result<Arc<Head>> {
-    static ADULT: OnceLock<Arc<Head>> = OnceLock::new();
-    static CARTOON: OnceLock<Arc<Head>> = OnceLock::new();
     let made = match style {
         Style::Adult => &ADULT,
         Style::Cartoon => &CARTOON,

@@ -5,6 +5,7 @@
 
 mod constants;
 mod domain;
+mod golden;
 mod guides;
 mod head;
 mod material;
@@ -14,12 +15,14 @@ mod picture;
 mod region;
 mod scene;
 mod strands;
+mod test;
+mod tested;
 
 use mlua::Lua;
 
 use super::call::invoke;
 use super::convert::to_lua;
-use super::registry::{Registry, registry as language};
+use super::registry::{Constant, Entry, Registry, registry as language};
 use super::session::session;
 use super::strict;
 use crate::params::{Table, Value};
@@ -35,14 +38,23 @@ pub fn registry() -> Registry {
         head::nouns(),
         vec![region::noun(), guides::noun(), strands::noun()],
         domain::nouns(),
-        vec![material::noun(), scene::noun()],
+        vec![material::noun(), scene::noun(), test::noun()],
+        tested::nouns(),
     ];
     Registry {
         functions: functions.into_iter().flatten().collect(),
+        test_functions: test::functions(),
         nouns: nouns.into_iter().flatten().collect(),
         constants: constants::constants(),
     }
 }
+
+/// The run's seed; what it is without `--seed`.
+pub const SEED: Constant = Constant {
+    name: "coif.seed",
+    doc: "The seed of this run, from `--seed`; 0 without it.",
+    value: || Value::Number(0.0),
+};
 
 /// A list as a value.
 fn list(items: impl IntoIterator<Item = Value>) -> Value {
@@ -54,6 +66,18 @@ fn list(items: impl IntoIterator<Item = Value>) -> Value {
 /// # Errors
 /// When Lua has no memory left.
 pub fn install(lua: &Lua) -> mlua::Result<()> {
+    install_all(lua, &[])
+}
+
+/// The same with what only tests may call.
+///
+/// # Errors
+/// When Lua has no memory left.
+pub fn install_for_tests(lua: &Lua) -> mlua::Result<()> {
+    install_all(lua, &language().test_functions)
+}
+
+fn install_all(lua: &Lua, more: &'static [Entry]) -> mlua::Result<()> {
     let root = lua.create_table()?;
     let mut folders: Vec<(String, mlua::Table)> = vec![("coif".into(), root.clone())];
     let mut put = |name: &str, value: mlua::Value| -> mlua::Result<()> {
@@ -75,7 +99,7 @@ pub fn install(lua: &Lua) -> mlua::Result<()> {
         }
         folder.raw_set(*last, value)
     };
-    for entry in &language().functions {
+    for entry in language().functions.iter().chain(more) {
         let function =
             lua.create_function(move |lua, args: mlua::MultiValue| invoke(lua, &*session(lua)?, entry, args))?;
         put(entry.name, mlua::Value::Function(function))?;
@@ -84,7 +108,7 @@ pub fn install(lua: &Lua) -> mlua::Result<()> {
         put(constant.name, to_lua(lua, &(constant.value)())?)?;
     }
     let seed = session(lua)?.options.seed;
-    put("coif.seed", mlua::Value::Number(seed as f64))?;
+    put(SEED.name, mlua::Value::Number(seed as f64))?;
     for (path, table) in &folders {
         strict::seal(lua, table, &format!("`{path}`"))?;
     }

@@ -3,7 +3,7 @@
 use super::super::call::{Call, Result};
 use super::super::registry::{Entry, Shape};
 use crate::math::Colour;
-use crate::params::{Problem, Reader, Table, Value};
+use crate::params::{Field, Kind, Params, Problem, Reader, Table, Value};
 
 /// A parameter that a script declares.
 #[derive(Clone, Debug)]
@@ -26,6 +26,31 @@ pub struct Parameter {
     pub doc: String,
     /// What a choice may be.
     pub choices: Vec<String>,
+}
+
+impl Parameter {
+    /// The value that a text from outside stands for, as `--set` takes it.
+    ///
+    /// # Errors
+    /// Why the parameter does not take it.
+    pub fn given(&self, text: &str) -> std::result::Result<Value, Problem> {
+        let value = match self.kind {
+            ParameterKind::Number | ParameterKind::Integer => text.trim().parse().ok().map(Value::Number),
+            ParameterKind::Boolean => text.trim().parse().ok().map(Value::Bool),
+            ParameterKind::Text | ParameterKind::Choice | ParameterKind::Colour => Some(Value::Text(text.to_owned())),
+            ParameterKind::Point => {
+                let numbers = text.split(',').filter_map(|n| n.trim().parse().ok());
+                let items: Vec<Value> = numbers.map(Value::Number).collect();
+                Some(Value::Table(Table { items, ..Table::default() }))
+            }
+        };
+        let value = value.ok_or_else(|| Problem {
+            path: String::new(),
+            message: format!("`{text}` is not a {}", self.kind.text()),
+            hint: Some(format!("as in `--set {}={}`", self.name, self.default)),
+        })?;
+        check(self, &value)
+    }
 }
 
 crate::choices! {
@@ -52,7 +77,7 @@ crate::params! {
     /// One parameter: `length = { 45, min = 10, max = 80, unit = "cm", doc = "longest strand" }`, or just `length = 45`.
     pub struct Declaration("coif.params") {
         /// What it is unless set from outside: a number, true or false, a text, `"#rrggbb"`, a point.
-        default: Vec<Value>, positional();
+        default: Vec<Value>, positional(), takes("number|boolean|string|Point");
         /// Least value of a number.
         min: Option<f32>;
         /// Greatest value of a number.
@@ -74,13 +99,20 @@ pub fn functions() -> Vec<Entry> {
         name: "coif.params",
         doc: "Declares the style's parameters and gives their values: the defaults, or what `--set name=value` says. \
               Each is a default, or a table of a default with `min`, `max`, `integer`, `unit`, `doc`, `choices`.",
-        fields: Vec::new,
+        fields: || vec![any_parameter()],
         shape: Shape::Table,
         returns: "table",
         sealed: Some("the table of parameters"),
         call: declare,
     };
     vec![declare]
+}
+
+/// What stands behind the name of a parameter.
+fn any_parameter() -> Field {
+    let kinds = vec![Kind::Struct(Declaration::NAME), Kind::Number, Kind::Bool, Kind::Text, Kind::Point];
+    let doc = "A parameter, by the name that it shall have.";
+    Field { kind: Kind::OneOf(kinds), ..Field::new::<Option<Declaration>>("parameter", doc).any_name() }
 }
 
 fn declare(call: &Call) -> Result<Value> {
@@ -112,7 +144,7 @@ fn parameter(name: &str, value: &Value) -> std::result::Result<Parameter, Vec<Pr
         _ => &whole,
     };
     let mut reader = Reader::default();
-    let declaration: Option<Declaration> = reader.inside(name, |r| crate::params::Params::read(table, r));
+    let declaration: Option<Declaration> = reader.inside(name, |r| Params::read(table, r));
     let problems = reader.problems();
     let problem = |message: String, hint: Option<String>| vec![Problem { path: name.to_owned(), message, hint }];
     let Some(d) = declaration.filter(|_| problems.is_empty()) else { return Err(problems) };
@@ -152,25 +184,11 @@ fn parameter(name: &str, value: &Value) -> std::result::Result<Parameter, Vec<Pr
 /// Takes over what the command line says.
 fn set(parameter: Parameter, text: Option<&String>) -> std::result::Result<Parameter, Vec<Problem>> {
     let Some(text) = text else { return Ok(parameter) };
-    let value = match parameter.kind {
-        ParameterKind::Number | ParameterKind::Integer => text.trim().parse().ok().map(Value::Number),
-        ParameterKind::Boolean => text.trim().parse().ok().map(Value::Bool),
-        ParameterKind::Text | ParameterKind::Choice | ParameterKind::Colour => Some(Value::Text(text.clone())),
-        ParameterKind::Point => {
-            let items: Vec<Value> = text.split(',').filter_map(|n| n.trim().parse().ok()).map(Value::Number).collect();
-            Some(Value::Table(Table { items, ..Table::default() }))
-        }
-    };
     let name = parameter.name.clone();
     let from_outside = |p: Problem| {
         vec![Problem { path: name.clone(), message: format!("`--set {name}={text}`: {}", p.message), hint: p.hint }]
     };
-    let value = value.ok_or_else(|| Problem {
-        path: String::new(),
-        message: format!("`{text}` is not a {}", parameter.kind.text()),
-        hint: Some(format!("as in `--set {name}={}`", parameter.default)),
-    });
-    let value = value.and_then(|v| check(&parameter, &v)).map_err(from_outside)?;
+    let value = parameter.given(text).map_err(from_outside)?;
     Ok(Parameter { value, ..parameter })
 }
 

@@ -8,7 +8,7 @@ use super::guides::Seedlings;
 use super::head::give;
 use crate::geometry::Root;
 use crate::groom::{GuideOptions, Guides};
-use crate::head::{Head, Parting, Region, roots, roots_by_density};
+use crate::head::{Head, Parting, Region, RootsError, roots, roots_by_density};
 use crate::math::Digest;
 use crate::params::{Function, Object, Value};
 use crate::task::Warned;
@@ -34,11 +34,12 @@ impl Area {
         Self { head, region, partings: vec![] }
     }
 
-    /// So many roots on it, or by their density.
+    /// So many roots on it (with the name of the field that says so), or by their density.
     ///
     /// # Errors
     /// Counts that make no sense, an empty region, cancelling.
-    pub fn roots(&self, call: &Call, count: usize, density: Option<f32>, seed: u64) -> Result<Arc<Vec<Root>>> {
+    pub fn roots(&self, call: &Call, count: (&str, usize), density: Option<f32>, seed: u64) -> Result<Arc<Vec<Root>>> {
+        let (field, count) = if density.is_some() { ("density", 0) } else { count };
         let (head, region, task) = (&self.head, &self.region, call.task());
         let mut key = Digest::new("roots 1");
         match density {
@@ -51,7 +52,10 @@ impl Area {
                 Some(density) => roots_by_density(head, region, density, seed, task),
                 None => roots(head, region, count, seed, task),
             };
-            found.map(Warned::clean).map_err(|e| call.problem(e.to_string(), e.hint()))
+            found.map(Warned::clean).map_err(|e| match e {
+                RootsError::Empty => call.problem(e.to_string(), e.hint()),
+                e => call.problem_at(field, e.to_string(), e.hint()),
+            })
         })
     }
 
@@ -88,7 +92,7 @@ crate::params! {
     /// The part of the region for whose places a function returns true.
     pub struct WhereFields("Region:where") {
         /// Takes a place on the head (a vector), returns true or false.
-        test: Function;
+        test: Function, takes("(place: vector): boolean");
     }
 }
 
@@ -96,7 +100,7 @@ crate::params! {
     /// The same region with hair thinned out.
     pub struct DensityFields("Region:density") {
         /// A number from 0 to 1, or a function that takes a place on the head (a vector) and returns one.
-        density: Value;
+        density: Value, takes("number|fun(place: vector): number");
     }
 }
 
@@ -104,7 +108,7 @@ crate::params! {
     /// The same region with a parting through it: strands on its two sides never blend.
     pub struct PartFields("Region:parting") {
         /// A parting, or a list of points to lay one through.
-        line: Value;
+        line: Value, takes("Parting|Point[]");
     }
 }
 
@@ -152,8 +156,8 @@ fn guides(call: &Call) -> Result<Value> {
     let area = call.this::<Area>()?;
     let (mut options, density) = call.read_both::<GuideOptions, GuideDensity>()?;
     options.seed = call.seed(options.seed);
-    let roots = area.roots(call, options.count, density.density, options.seed)?;
-    options.check(&roots).map_err(|e| call.problem(e.to_string(), None))?;
+    let roots = area.roots(call, ("count", options.count), density.density, options.seed)?;
+    options.check(&roots).map_err(|e| call.groom(&e))?;
     let guides = Guides { roots: Vec::clone(&roots), options, source: call.source() };
     Ok(give(Seedlings { guides, area: Area::clone(&area) }))
 }

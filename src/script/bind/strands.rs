@@ -143,7 +143,7 @@ fn fill_strands(call: &Call) -> Result<Value> {
         None => &this.area,
     };
     let head = &area.head;
-    let roots = area.roots(call, options.strands, extras.density, options.seed)?;
+    let roots = area.roots(call, ("strands", options.strands), extras.density, options.seed)?;
     let partings = &this.area.partings;
     let separated = |a, b| partings.iter().any(|p| p.separates(a, b));
     let source = call.source();
