@@ -23,6 +23,14 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
                 part.mean_length,
                 part.longest,
             ),
+            triangles if part.tufts > 0 => writeln!(
+                out,
+                "{name:>8}  {} tufts, {} triangles; {:.1} cm long on average, {:.1} cm at most",
+                thousands(part.tufts),
+                thousands(triangles),
+                part.mean_length,
+                part.longest,
+            ),
             triangles => writeln!(out, "{name:>8}  {} triangles", thousands(triangles)),
         };
     }

@@ -14,8 +14,8 @@ use crate::task::{Warned, Warning};
 crate::params! {
     /// A cap of hair that lies on the scalp.
     pub struct CapOptions("coif.cap") {
-        /// Control points of the border on the head, in order around it.
-        border: Vec<Vec3>;
+        /// Control points of the border on the head, in order around it; the natural hairline when left out.
+        border: Vec<Vec3> = vec![];
         /// Where the hair parts to all sides; the top of the head when left out.
         crown: Option<Vec3>;
         /// Thickness of the hair on the head.

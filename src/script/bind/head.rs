@@ -186,10 +186,10 @@ fn head(call: &Call) -> Result<Value> {
     if let Some(head) = call.session.heads.borrow().get(&key) {
         return Ok(Value::Handle(Handle::new(Arc::clone(head))));
     }
-    let head = Arc::new(match (&call.session.options.head, &fields.file) {
+    let head = match (&call.session.options.head, &fields.file) {
         (Some(path), _) => {
             let options = LoadOptions { unit: call.session.options.head_unit, ..LoadOptions::default() };
-            from_file(call, path, "", &options, &BTreeMap::new())?
+            Arc::new(from_file(call, path, "", &options, &BTreeMap::new())?)
         }
         (None, Some(file)) => {
             let options = LoadOptions {
@@ -198,7 +198,8 @@ fn head(call: &Call) -> Result<Value> {
                 forward: fields.forward,
                 groups: fields.groups.clone(),
             };
-            from_file(call, &call.session.options.folder().join(file), "file", &options, &landmarks(call, &fields)?)?
+            let path = call.session.options.folder().join(file);
+            Arc::new(from_file(call, &path, "file", &options, &landmarks(call, &fields)?)?)
         }
         (None, None) => {
             let lone = [
@@ -212,9 +213,9 @@ fn head(call: &Call) -> Result<Value> {
                 let hint = "name the file: `file = \"anna.glb\"`".to_owned();
                 return Err(call.problem_at(name, format!("`{name}` is about a file, but there is none"), Some(hint)));
             }
-            return Ok(Value::Handle(Handle::new(built_in(call, fields.style)?)));
+            built_in(call, fields.style)?
         }
-    });
+    };
     call.session.heads.borrow_mut().insert(key, Arc::clone(&head));
     Ok(Value::Handle(Handle::new(head)))
 }
