@@ -62,6 +62,7 @@ fn command_run(arguments: &RunArguments) -> u8 {
         tolerance: arguments.tolerance,
         guides: arguments.guides && arguments.strands != StrandForm::None,
         count_inside: arguments.stats,
+        triangles: arguments.triangles.map(|n| n as usize),
     };
     let report = match barrier::run(&arguments.script, move |task| workbench::run(&options, Arc::new(Disk), task)) {
         Ok(report) => report,
@@ -87,7 +88,7 @@ fn command_run(arguments: &RunArguments) -> u8 {
             say(&format!("error: {error}\n"));
             WRITE
         }
-        Err(error @ (RunError::Render(_) | RunError::Png(_) | RunError::Export(_))) => {
+        Err(error @ (RunError::Render(_) | RunError::Png(_) | RunError::Export(_) | RunError::Budget(_))) => {
             say(&format!("error: {error}; nothing was written\n"));
             SCRIPT
         }

@@ -34,6 +34,17 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
             triangles => writeln!(out, "{name:>8}  {} triangles", thousands(triangles)),
         };
     }
+    if let Some(budget) = &report.budget {
+        let (before, after) = (thousands(budget.before), thousands(budget.after));
+        let _ = match budget.tolerance {
+            Some(tolerance) => writeln!(
+                out,
+                "{:>8}  {before} triangles became {after}: {} of {} tufts, by {tolerance:.3} cm at most",
+                "budget", budget.lowered, budget.tufts
+            ),
+            None => writeln!(out, "{:>8}  {before} triangles are within it", "budget"),
+        };
+    }
     let stages: Vec<String> = report.stages.iter().map(|s| format!("{} {}", s.what, milliseconds(s.time))).collect();
     let all: Duration = report.stages.iter().map(|s| s.time).sum();
     let _ = writeln!(out, "{:>8}  {}: {}", "time", milliseconds(all), stages.join(", "));
@@ -66,6 +77,9 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "ms": stages,
         "calls": calls,
         "files": files,
+        "budget": report.budget.map(|b| json!({
+            "before": b.before, "after": b.after, "lowered": b.lowered, "tufts": b.tufts, "tolerance_cm": b.tolerance,
+        })),
         "warnings": report.outcome.diagnostics.len(),
     });
     format!("{object}\n")

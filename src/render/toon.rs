@@ -24,7 +24,9 @@ const LINE: f32 = 2.1;
 /// A step in depth within one body that draws a line, cm.
 const STEP: f32 = 0.45;
 /// Half the width of the border between two tones, as a cosine: no wider than a pixel or two.
-const BORDER: f32 = 0.015;
+const BORDER: f32 = 0.007;
+/// Height of a fold of the skin that draws a line, cm.
+const FOLD: f32 = 0.35;
 /// No surface.
 const NOTHING: u32 = u32::MAX;
 
@@ -44,7 +46,7 @@ struct Tones {
 
 impl Tones {
     fn of_skin(albedo: Vec3) -> Self {
-        let shade = Vec3::new(0.72, 0.52, 0.47);
+        let shade = Vec3::new(0.80, 0.60, 0.54);
         Self { lit: [albedo; 2], shade, light: albedo, ink: albedo * Vec3::new(0.10, 0.045, 0.04), band: 0.0 }
     }
 
@@ -109,9 +111,11 @@ struct Seen {
     /// Change of depth per pixel to the right and downward.
     slope: Vec2,
     along: f32,
+    /// How much the surface faces up.
+    tilt: f32,
 }
 
-const UNSEEN: Seen = Seen { id: [NOTHING; 2], z: f32::NEG_INFINITY, slope: Vec2::ZERO, along: 0.0 };
+const UNSEEN: Seen = Seen { id: [NOTHING; 2], z: f32::NEG_INFINITY, slope: Vec2::ZERO, along: 0.0, tilt: 0.0 };
 
 /// A drop of ink: middle and radius in pixels, colour, depth.
 #[derive(Clone, Copy)]
@@ -181,7 +185,15 @@ impl Toon {
             seen.extend(some);
         }
         let pen = LINE * (width as f32 / 640.0).max(0.55 * supersample as f32);
-        let drops: Vec<Vec<Drop>> = (0..height).into_par_iter().map(|y| self.edges(&seen, width, y, pen)).collect();
+        let reach = (FOLD * camera.scale).round().max(1.0) as usize;
+        let drops: Vec<Vec<Drop>> = (0..height)
+            .into_par_iter()
+            .map(|y| {
+                let mut drops = self.edges(&seen, width, y, pen);
+                self.folds(&seen, width, y, reach, pen, &mut drops);
+                drops
+            })
+            .collect();
         ink(&mut layer, height, &drops);
         Ok(layer)
     }
@@ -254,7 +266,8 @@ impl Toon {
                     // Depth falls along the picture as the surface turns away.
                     let toward = facing.dot(camera.toward).max(0.12);
                     let slope = Vec2::new(-facing.dot(camera.right), facing.dot(camera.up)) / (toward * camera.scale);
-                    seen[i] = Seen { id: this, z: deep * share, slope, along: place.along };
+                    let tilt = facing.dot(camera.up);
+                    seen[i] = Seen { id: this, z: deep * share, slope, along: place.along, tilt };
                 }
             }
             if hits > 0 {
@@ -286,7 +299,7 @@ impl Toon {
             let grain = place.grain.normalize_or_zero();
             let off = (grain.dot(light.half) - 0.10 - 0.10 * shift).abs();
             let facing = n.dot(light.half) - 0.80 + 0.25 * tones.band;
-            step((tones.band * 0.55 - off) * 0.5).min(step(facing)) * lit * f32::from(grain != Vec3::ZERO)
+            step(tones.band * 0.55 - off).min(step(facing)) * lit * f32::from(grain != Vec3::ZERO)
         } else {
             0.0
         };
@@ -312,6 +325,31 @@ impl Toon {
             }
         }
         drops
+    }
+
+    /// Lines along folds of the skin that look down: lids, lips, the wings of the nose. The surface turns down and up
+    /// again within [`FOLD`].
+    fn folds(&self, seen: &[Seen], width: usize, y: usize, reach: usize, pen: f32, drops: &mut Vec<Drop>) {
+        let height = seen.len() / width;
+        if y < reach || y + reach >= height {
+            return;
+        }
+        for x in 0..width {
+            let here = &seen[y * width + x];
+            let Some(figure) = self.figures.get(here.id[0] as usize).filter(|f| f.locks.is_empty()) else { continue };
+            let (above, below) = (&seen[(y - reach) * width + x], &seen[(y + reach) * width + x]);
+            if above.id != here.id || below.id != here.id {
+                continue;
+            }
+            let dip = above.tilt.min(below.tilt) - here.tilt;
+            // Only the bottom of the fold.
+            let (up, down) = (seen[(y - 1) * width + x].tilt, seen[(y + 1) * width + x].tilt);
+            if dip > 0.30 && here.tilt <= up && here.tilt <= down {
+                let weight = 0.9 * crate::math::trig::smoothstep(0.25, 0.9, dip);
+                let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+                drops.push(Drop { at, radius: 0.5 * pen * weight, colour: figure.tones(0).ink, z: here.z });
+            }
+        }
     }
 
     /// The line between two neighbouring pixels: radius, colour, depth.

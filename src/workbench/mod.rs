@@ -3,10 +3,12 @@
 //! Everything is made in memory first, written beside its place and renamed into it: a reader never sees half a file,
 //! and after an error the folder is as it was before.
 
+mod budget;
 mod figures;
 mod output;
 mod run;
 
+pub use budget::Budget;
 pub use figures::{PartFigures, figures};
 pub use output::{Output, WriteError, Written, write_all};
 pub use run::{Report, RunError, RunOptions, Stage, run};

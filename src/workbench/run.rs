@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::budget::Budget;
 use super::output::{Output, WriteError, Written, write_all};
 use super::{PartFigures, figures};
 use crate::export::{ExportError, GlbOptions, StrandForm, glb, guides_glb};
@@ -11,6 +12,7 @@ use crate::render::{PngError, RenderError, SheetOptions, Speed, png, sheet};
 use crate::scene::{Background, Scene, View};
 use crate::script::{self, Ending, Files, Outcome};
 use crate::task::Task;
+use crate::tuft::TuftError;
 
 /// What is wanted of a run.
 #[derive(Clone, Debug)]
@@ -33,6 +35,8 @@ pub struct RunOptions {
     pub tolerance: f32,
     /// A second GLB with the guides.
     pub guides: bool,
+    /// Most triangles of all tufts together.
+    pub triangles: Option<usize>,
     /// Count the strands that are inside the head.
     pub count_inside: bool,
 }
@@ -61,6 +65,9 @@ pub enum RunError {
     /// No picture file.
     #[error(transparent)]
     Png(#[from] PngError),
+    /// Too few triangles asked for.
+    #[error("{0}")]
+    Budget(TuftError),
     /// No GLB.
     #[error(transparent)]
     Export(ExportError),
@@ -96,6 +103,8 @@ pub struct Report {
     pub figures: Vec<PartFigures>,
     /// Steps and their times, in order.
     pub stages: Vec<Stage>,
+    /// What was done to keep within the triangles.
+    pub budget: Option<Budget>,
     /// The files, in the order they were put into place; or why there are none.
     pub written: Result<Vec<Written>, RunError>,
 }
@@ -104,7 +113,7 @@ pub struct Report {
 pub fn run(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
     let mut stages = vec![];
     let outcome = timed(&mut stages, "script", || script::run(&options.script, files, task));
-    let mut report = Report { outcome, figures: vec![], stages, written: Err(RunError::Script) };
+    let mut report = Report { outcome, figures: vec![], stages, budget: None, written: Err(RunError::Script) };
     report.written = match (report.outcome.ending, report.outcome.scene.as_mut()) {
         (Ending::Cancelled, _) => Err(RunError::Cancelled),
         (Ending::Done, Some(scene)) => {
@@ -113,6 +122,15 @@ pub fn run(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
             }
             if let Some(views) = &options.views {
                 scene.views.clone_from(views);
+            }
+            if let Some(triangles) = options.triangles {
+                match timed(&mut report.stages, "triangles", || super::budget::keep(scene, triangles)) {
+                    Ok(budget) => report.budget = Some(budget),
+                    Err(error) => {
+                        report.written = Err(RunError::Budget(error));
+                        return report;
+                    }
+                }
             }
             report.figures = figures(scene);
             if options.count_inside {
