@@ -26,7 +26,7 @@ const STEP: f32 = 0.45;
 /// Half the width of the border between two tones, as a cosine: no wider than a pixel or two.
 const BORDER: f32 = 0.007;
 /// Height of a fold of the skin that draws a line, cm.
-const FOLD: f32 = 0.35;
+const FOLD: f32 = 0.42;
 /// No surface.
 const NOTHING: u32 = u32::MAX;
 
@@ -257,7 +257,7 @@ impl Toon {
                     facing = -facing;
                 }
                 let place = Place { point: point * share, normal: facing, grain, along: along * share };
-                let colour = self.shade(figure, this[1], &place, light, camera.toward);
+                let colour = self.shade(figure, this[1], &place, light);
                 layer.colour[i] += colour * weight as f32;
                 hits += weight;
                 z = z.max(deep * share);
@@ -279,7 +279,7 @@ impl Toon {
         (layer, seen)
     }
 
-    fn shade(&self, figure: &Figure, lock: u32, place: &Place, light: &Light, toward: Vec3) -> Vec3 {
+    fn shade(&self, figure: &Figure, lock: u32, place: &Place, light: &Light) -> Vec3 {
         let tones = figure.tones(lock);
         let out = (place.point - self.centre).normalize_or(place.normal);
         let step = |x: f32| crate::math::trig::smoothstep(-BORDER, BORDER, x);
@@ -303,7 +303,6 @@ impl Toon {
         } else {
             0.0
         };
-        let _ = toward;
         tones.at(place.along, lit, bright)
     }
 
@@ -344,8 +343,8 @@ impl Toon {
             let dip = above.tilt.min(below.tilt) - here.tilt;
             // Only the bottom of the fold.
             let (up, down) = (seen[(y - 1) * width + x].tilt, seen[(y + 1) * width + x].tilt);
-            if dip > 0.30 && here.tilt <= up && here.tilt <= down {
-                let weight = 0.9 * crate::math::trig::smoothstep(0.25, 0.9, dip);
+            if dip > 0.10 && here.tilt <= up && here.tilt <= down {
+                let weight = 0.9 * crate::math::trig::smoothstep(0.04, 0.45, dip);
                 let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
                 drops.push(Drop { at, radius: 0.5 * pen * weight, colour: figure.tones(0).ink, z: here.z });
             }
