@@ -7,7 +7,7 @@ local p = coif.params {
 local head = coif.head { style = "cartoon" }
 local look = coif.material.tuft { colour = p.hair, shine = 0.4 }
 
--- A spike grows at (azimuth, elevation), rises, and ends over another place.
+-- A spike grows at (azimuth, elevation), lies on the hair at first, and rises to a tip over another place.
 local function spike(azimuth, elevation, to_azimuth, to_elevation, height, width)
   local function at(t, h)
     return head:point {
@@ -16,38 +16,42 @@ local function spike(azimuth, elevation, to_azimuth, to_elevation, height, width
   end
   local h = height * p.length
   return coif.tuft {
-    stroke = { at(0, 0), at(0.22, 0.30 * h), at(0.55, 0.66 * h), at(1, h) },
-    profile = { { 0, 0.8 * width, 0.5 * width }, { 0.3, width, 0.62 * width }, { 0.7, 0.55 * width, 0.36 * width }, { 1, 0, 0 } },
+    stroke = { at(0, 0), at(0.25, 0.6 + 0.10 * h), at(0.58, 0.7 + 0.34 * h), at(1, h) },
+    profile = {
+      { 0, 0.4, 0.4 }, { 0.15, 0.8 * width, 0.45 * width }, { 0.32, width, 0.6 * width },
+      { 0.65, 0.55 * width, 0.42 * width }, { 1, 0, 0 },
+    },
     material = look, bury = true,
   }
 end
 
 local spikes = {}
-local function ring(list)
+local function add(list)
   for _, s in list do
     local one = spike(s[1], s[2], s[3], s[4], s[5], s[6])
     table.insert(spikes, one)
-    if s[1] ~= 0 and s[1] ~= 180 then table.insert(spikes, one:mirrored()) end
+    if s.lone == nil then table.insert(spikes, one:mirrored()) end
   end
 end
 
--- The brow: locks that fall onto the forehead.
-ring {
-  { 5, 52, -9, 16, 1.8, 4.2 }, { 22, 50, 27, 12, 2.2, 4.4 }, { 42, 47, 52, 10, 2.4, 4.4 }, { 60, 42, 72, 6, 2.4, 4.2 },
+-- The brow: locks that fall onto the forehead, one of them across it.
+add {
+  { 6, 68, -13, 4, 1.5, 5.0, lone = true }, { -12, 66, -32, -2, 1.7, 4.8, lone = true },
+  { 22, 67, 13, 10, 1.6, 4.6, lone = true }, { 32, 64, 38, -1, 1.9, 5.0, lone = true },
+  { -32, 62, -50, -4, 2.0, 4.8, lone = true }, { 48, 58, 58, -6, 2.0, 5.0, lone = true },
+  { 62, 48, 72, -24, 2.0, 4.2 },
 }
 -- Over the brow: up and outward.
-ring {
-  { 0, 62, 14, 58, 7.5, 4.6 }, { 24, 60, 34, 44, 7.5, 4.8 }, { 50, 55, 60, 40, 7.5, 4.8 }, { 72, 44, 80, 26, 6.5, 4.6 },
+add {
+  { 10, 80, 14, 62, 11, 6, lone = true }, { -16, 78, -24, 58, 10, 6, lone = true }, { 40, 74, 44, 50, 10, 6 },
+  { 62, 68, 66, 38, 9.4, 6 }, { 82, 58, 82, 24, 8, 5.8 }, { 94, 44, 90, 8, 6.2, 5.4 },
 }
--- The crown.
-ring {
-  { 0, 78, 6, 74, 9, 5 }, { 45, 74, 50, 60, 9, 5 }, { 92, 66, 92, 48, 8.5, 5 }, { 135, 72, 138, 54, 8.5, 5 }, { 180, 72, 172, 52, 8.5, 5 },
-}
--- Sides and back.
-ring {
-  { 84, 28, 88, 6, 4.6, 4.2 }, { 100, 44, 106, 22, 6, 4.6 }, { 125, 48, 130, 28, 6.5, 4.8 }, { 152, 48, 154, 28, 6.5, 4.8 },
-  { 180, 50, 180, 30, 6.5, 4.8 }, { 108, 22, 112, 0, 4.6, 4.4 }, { 134, 24, 136, 2, 5, 4.6 }, { 160, 24, 160, 0, 5, 4.6 },
-  { 116, 2, 120, -20, 3.4, 4 }, { 142, 2, 142, -22, 3.6, 4.4 }, { 168, 2, 168, -24, 3.6, 4.4 },
+-- The crown and the back: backward, the lower the flatter.
+add {
+  { 180, 84, 176, 62, 11, 6.4, lone = true }, { 120, 78, 116, 54, 10.5, 6.2 }, { 152, 68, 154, 44, 10, 6.4 },
+  { 112, 60, 106, 30, 9, 6.2 }, { 136, 54, 134, 24, 8.8, 6.2 }, { 174, 56, 172, 26, 8.8, 6.4 }, { 158, 40, 156, 8, 7.6, 6.2 },
+  { 112, 38, 108, 2, 6.4, 5.8 }, { 134, 30, 132, -6, 6.2, 5.8 }, { 172, 26, 174, -12, 6, 5.8 }, { 104, 18, 108, -18, 3.8, 4.8 },
+  { 126, 10, 128, -30, 3.8, 5.2 }, { 152, 14, 150, -28, 4.6, 5.6 }, { 180, 2, 180, -42, 3.6, 5.4, lone = true }, { 160, -4, 158, -44, 3, 5 },
 }
 
 return coif.scene {

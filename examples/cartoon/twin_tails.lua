@@ -34,9 +34,9 @@ local function lock(side, forward, width, reach)
 end
 local tail = lock(0, 0, 4.4, 1) + lock(1.3, 1.2, 3.2, 0.86) + lock(-1.0, 1.7, 3.0, 0.92)
   + lock(1.0, -1.6, 3.2, 0.9) + lock(-1.2, -1.4, 3.0, 0.8)
-local tie = coif.bun { position = at(72, 46, 1.7), axis = at(72, 46, 2) - at(72, 46, 1), radius = 1.5, length = 1.7, material = p.ties }
+local tie = coif.bun { position = at(72, 46, 1.7), axis = at(72, 46, 2) - at(72, 46, 1), radius = 2.1, length = 1.9, material = p.ties }
 local tie_right = coif.bun {
-  position = at(-72, 46, 1.7), axis = at(-72, 46, 2) - at(-72, 46, 1), radius = 1.5, length = 1.7, material = p.ties,
+  position = at(-72, 46, 1.7), axis = at(-72, 46, 2) - at(-72, 46, 1), radius = 2.1, length = 1.9, material = p.ties,
 }
 
 -- The fringe: three locks by hand, the rest between them.
@@ -55,6 +55,24 @@ for _, lock in { { -56, -6, 22 }, { -36, -4, 16 }, { -18, 6, 14 }, { 2, 9, 17 },
   table.insert(front, fringe(lock[1], lock[2], lock[3]))
 end
 
+-- Combed from the parting at the back to the knot.
+local combed = {}
+for _, elevation in { 66, 44, 22, 2, -18, -32 } do
+  local root   = at(180, elevation)
+  local points = { root }
+  for _, t in { 0.25, 0.5, 0.75 } do
+    local way = vector.normalize(root + (knot - root) * t - head.centre)
+    table.insert(points, at(math.deg(math.atan2(way.x, way.z)), math.deg(math.asin(way.y)), 0.9))
+  end
+  table.insert(points, out)
+  local lock = coif.tuft {
+    stroke = points, material = look, bury = true, bend = 30,
+    profile = { { 0, 1.5, 0.6 }, { 0.3, 4.6, 1.3 }, { 0.7, 3.0, 1.2 }, { 1, 0.5, 0.5 } },
+  }
+  table.insert(combed, lock)
+  table.insert(combed, lock:mirrored())
+end
+
 -- A wisp before each ear.
 local wisp = coif.tuft {
   stroke = { at(72, 34), at(70, 18, 1.4), at(67, -4, 1.2), at(62, -26, 1.4), at(58, -44, 1.6) },
@@ -63,6 +81,6 @@ local wisp = coif.tuft {
 }
 
 return coif.scene {
-  head, cap, tail, tail:mirrored(), tie, tie_right, front, wisp, wisp:mirrored(),
+  head, cap, combed, tail, tail:mirrored(), tie, tie_right, front, wisp, wisp:mirrored(),
   shading = "toon", skin = "#f3cfb4", views = { "front", "three-quarter", "left", "back" },
 }

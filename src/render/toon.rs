@@ -56,8 +56,8 @@ impl Tones {
         // Shade leans to blue, as under a sky.
         let cool = Vec3::new(0.46, 0.45, 0.56);
         let shade = material.shade.map_or(cool, |c| c.to_linear() / base);
-        // Dark hair needs a light of its own, bright hair a nearly white one.
-        let pale = lit[0] * 1.25 + (Vec3::ONE - lit[0] * 1.25).max(Vec3::ZERO) * 0.28;
+        // The hair's own colour, brighter, with a little of the lamp's.
+        let pale = (lit[0] * 2.1 + Vec3::splat(0.09)).min(Vec3::ONE);
         let light = material.light.map_or(pale, |c| c.to_linear());
         let ink = material.ink.map_or(lit[0] * 0.10 + Vec3::splat(0.002), |c| c.to_linear());
         Self { lit, shade, light, ink, band: 0.30 * material.shine }
@@ -344,7 +344,7 @@ impl Toon {
             // Only the bottom of the fold.
             let (up, down) = (seen[(y - 1) * width + x].tilt, seen[(y + 1) * width + x].tilt);
             if dip > 0.10 && here.tilt <= up && here.tilt <= down {
-                let weight = 0.9 * crate::math::trig::smoothstep(0.04, 0.45, dip);
+                let weight = 1.25 * crate::math::trig::smoothstep(0.02, 0.40, dip);
                 let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
                 drops.push(Drop { at, radius: 0.5 * pen * weight, colour: figure.tones(0).ink, z: here.z });
             }
