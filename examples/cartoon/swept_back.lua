@@ -35,13 +35,15 @@ local function pair(azimuth, elevation, rise, tip, width)
   if azimuth ~= 0 and azimuth ~= 180 then table.insert(mane, lock:mirrored()) end
 end
 -- From the brow, the highest farthest back.
-pair(0, 38, 3.2, vector.create(0, 15.5, -18), 5.4)
-pair(18, 37, 3.1, vector.create(3.6, 14.5, -18.5), 5.4)
-pair(35, 35, 2.8, vector.create(7.0, 12, -18.5), 5.4)
-pair(50, 31, 2.3, vector.create(9.6, 8.5, -17.5), 5.2)
-pair(62, 25, 1.8, vector.create(11.2, 4.5, -16), 5.0)
-pair(71, 17, 1.4, vector.create(11.4, 0.0, -14.5), 4.6)
-pair(77, 7, 1.0, vector.create(10.4, -4.5, -12.5), 3.8)
+pair(0, 16, 3.0, vector.create(0, 15.5, -18), 5.2)
+pair(11, 16, 3.0, vector.create(2.6, 15.0, -18.5), 5.2)
+pair(22, 14, 2.9, vector.create(5.0, 13.6, -18.5), 5.2)
+pair(32, 10, 2.7, vector.create(7.2, 11.5, -18.5), 5.2)
+pair(41, 5, 2.4, vector.create(9.0, 9.0, -18), 5.0)
+pair(49, -2, 2.0, vector.create(10.4, 6.0, -17), 5.0)
+pair(56, -8, 1.6, vector.create(11.2, 2.6, -15.5), 4.8)
+pair(63, -9, 1.3, vector.create(11.4, -1.0, -14), 4.4)
+pair(71, -4, 1.0, vector.create(10.4, -4.5, -12.5), 3.6)
 -- Under them, the locks of the back.
 pair(180, 62, 2.0, vector.create(0, 8.5, -21), 6)
 pair(152, 56, 2.0, vector.create(5.4, 6.0, -20.5), 6)
@@ -55,7 +57,7 @@ pair(128, -4, 1.1, vector.create(7.6, -8.0, -11.5), 4.8)
 
 -- One lock that would not go back.
 local stray = coif.tuft {
-  stroke = { at(8, 42), at(4, 40, 2.6), at(-6, 30, 3.4), at(-15, 18, 2.4), at(-18, 6, 1.2) },
+  stroke = { at(9, 19), at(5, 24, 2.4), at(-6, 20, 3.6), at(-14, 8, 2.8), at(-17, -6, 1.4) },
   profile = { { 0, 0.5, 0.4 }, { 0.35, 2.0, 0.9 }, { 1, 0, 0 } },
   material = look, lift = true,
 }

@@ -56,8 +56,9 @@ impl Tones {
         // Shade leans to blue, as under a sky.
         let cool = Vec3::new(0.46, 0.45, 0.56);
         let shade = material.shade.map_or(cool, |c| c.to_linear() / base);
-        // The hair's own colour, brighter, with a little of the lamp's.
-        let pale = (lit[0] * 2.1 + Vec3::splat(0.09)).min(Vec3::ONE);
+        // The hair's own colour as bright as it goes; what is bright already turns whiter instead.
+        let more = (0.95 / lit[0].max_element().max(1e-3)).clamp(1.0, 2.4);
+        let pale = (lit[0] * more).lerp(Vec3::ONE, 0.46 - 0.30 * (more - 1.0) / 1.4);
         let light = material.light.map_or(pale, |c| c.to_linear());
         let ink = material.ink.map_or(lit[0] * 0.10 + Vec3::splat(0.002), |c| c.to_linear());
         Self { lit, shade, light, ink, band: 0.30 * material.shine }

@@ -25,7 +25,7 @@ pub struct Budget {
 ///
 /// # Errors
 /// Fewer triangles than the coarsest meshes need.
-pub fn keep(scene: &mut Scene, triangles: usize) -> Result<Budget, TuftError> {
+pub fn keep_within(scene: &mut Scene, triangles: usize) -> Result<Budget, TuftError> {
     let mut all = Tufts::default();
     for (_, locks) in scene.locks() {
         all.tufts.extend(locks.tufts.tufts.iter().cloned());

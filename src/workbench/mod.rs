@@ -8,7 +8,7 @@ mod figures;
 mod output;
 mod run;
 
-pub use budget::Budget;
+pub use budget::{Budget, keep_within};
 pub use figures::{PartFigures, figures};
 pub use output::{Output, WriteError, Written, write_all};
 pub use run::{Report, RunError, RunOptions, Stage, run};

@@ -124,7 +124,7 @@ pub fn run(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
                 scene.views.clone_from(views);
             }
             if let Some(triangles) = options.triangles {
-                match timed(&mut report.stages, "triangles", || super::budget::keep(scene, triangles)) {
+                match timed(&mut report.stages, "triangles", || super::budget::keep_within(scene, triangles)) {
                     Ok(budget) => report.budget = Some(budget),
                     Err(error) => {
                         report.written = Err(RunError::Budget(error));

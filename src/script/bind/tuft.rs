@@ -232,9 +232,15 @@ impl Wig {
     }
 }
 
-/// An error of the methods, about the field that it comes from. `points` is the field with the control points, `list`
-/// how tufts are counted.
+/// An error of the methods, about the field that it comes from. `points` is the field with the control points; `[]` when
+/// the list part of the table has one tuft in each place.
 pub fn tuft_error(call: &Call, points: &str, error: &TuftError) -> Raised {
+    let of_list = match error {
+        TuftError::PointCounts { number, .. } | TuftError::SectionKinds { number, .. } if points == "[]" => {
+            format!("[{number}]")
+        }
+        _ => String::new(),
+    };
     let (path, hint) = match error {
         TuftError::TooFewPoints { least: 2, .. } => {
             (points.to_owned(), Some("give the root and at least one point more: { root, tip }".to_owned()))
@@ -258,14 +264,17 @@ pub fn tuft_error(call: &Call, points: &str, error: &TuftError) -> Raised {
             let hint = "as in { { 0, 1, 0.6 }, { 0.5, 3, 1 }, { 1, 0, 0 } }".to_owned();
             (format!("profile[{number}]"), Some(hint))
         }
-        TuftError::NoSize { .. } => ("profile".to_owned(), None),
+        TuftError::NoSize { .. } if call.has_field("profile") => ("profile".to_owned(), None),
+        TuftError::NoSize { .. } => {
+            (points.to_owned(), Some("choose a place farther from the root and the tip".to_owned()))
+        }
         TuftError::Exclusive { second, .. } => ((*second).to_owned(), Some("leave one of them out".to_owned())),
         TuftError::RingsWithoutSides => ("rings".to_owned(), Some("give `sides` too, as in `sides = 24`".to_owned())),
         TuftError::PointCounts { before, .. } => {
-            (String::new(), Some(format!("give both strokes the same number of points, say {before}")))
+            (of_list, Some(format!("give both strokes the same number of points, say {before}")))
         }
         TuftError::SectionKinds { .. } => {
-            (String::new(), Some("give both a `diameter`, both an `ellipse`, or both a `profile`".to_owned()))
+            (of_list, Some("give both a `diameter`, both an `ellipse`, or both a `profile`".to_owned()))
         }
         TuftError::NoTufts => (String::new(), Some("as in `coif.fill { a, b, around = 60 }`".to_owned())),
         TuftError::NoRoot { .. } => {
@@ -402,7 +411,8 @@ fn fill_between(call: &Call) -> Result<Value> {
         }));
     }
     let made = fill(&chain, &options, &ground(&first.head));
-    let made = call.warned(made.map_err(|e| tuft_error(call, "", &e))?);
+    let list = if extras.tufts.iter().all(|w| w.tufts.count() == 1) { "[]" } else { "" };
+    let made = call.warned(made.map_err(|e| tuft_error(call, list, &e))?);
     let fresh = settle(call, Tufts::new(made, &call.source()), &first.head, extras.lift, extras.dip)?;
     Ok(give(parents.joined(&Wig { tufts: Arc::new(fresh), ..parents.clone() })))
 }
