@@ -24,7 +24,8 @@ local function queue(k)
   }
 end
 
-local guides = head:scalp():guides { count = 600, length = p.length, length_variation = 0.06, stiffness = 1.5 }
+local guides = head:scalp():guides { count = 600, length = p.length, length_variation = 0.06, stiffness = 1.5,
+  lay_from = head:at("forehead", { 0, 0, 3 }), lay_amount = 0.85 }
 local locals = {}
 for k = 1, 3 do
   locals[k] = { where = function(root) return third(root) == k end, queue = queue(k) }

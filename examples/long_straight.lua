@@ -14,7 +14,7 @@ local crown   = head:at("vertex", { 0, -5, 0 }).y
 local function side(sign)
   return coif.queue {
     coif.domain.directional {
-      box = { min = { -40, crown, -40 }, max = { 40, 40, 40 } }, direction = { 0.45 * sign, -1, -0.12 },
+      box = { min = { -40, crown, -40 }, max = { 40, 40, 40 } }, direction = { 0.55 * sign, -1, -0.45 },
     },
   }
 end
@@ -25,7 +25,7 @@ local fall = coif.queue {
 }
 
 local hair = head:scalp():parting(parting)
-  :guides { count = 800, length = p.length, length_variation = 0.12, stiffness = 1.2, lay = { 0, -1, -0.4 }, lay_amount = 0.75 }
+  :guides { count = 800, length = p.length, length_variation = 0.12, stiffness = 1.2, lay_from = head:at("forehead", { 0, 0, 3 }), lay_amount = 0.75 }
   :grow {
     global = fall,
     locals = {

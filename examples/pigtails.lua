@@ -19,7 +19,8 @@ local function side(sign)
 end
 
 local hair = head:scalp():parting(parting)
-  :guides { count = 800, length = p.length, length_variation = 0.25, stiffness = 1.5 }
+  :guides { count = 800, length = p.length, length_variation = 0.25, stiffness = 1.5,
+    lay_from = head:at("forehead", { 0, 2, 3 }), lay_amount = 0.8 }
   :grow {
     locals = {
       { where = function(root) return parting:side(root) >= 0 end, queue = side(1) },

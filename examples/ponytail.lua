@@ -25,7 +25,8 @@ end
 local behind = coif.box { min = { -25, -100, -60 }, max = { 25, 30, tie.z - 0.5 } }
 
 local hair = head:scalp()
-  :guides { count = 800, length = p.length, length_variation = 0.25, stiffness = 1.5 }
+  :guides { count = 800, length = p.length, length_variation = 0.25, stiffness = 1.5,
+    lay_from = head:at("chin", { 0, 2, 6 }), lay_amount = 0.85 }
   :grow {
     global = coif.queue { coif.domain.directional { box = behind, direction = { 0, -1, -0.06 }, strength = 0.6 } },
     locals = {

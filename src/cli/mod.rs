@@ -4,7 +4,10 @@
 
 mod args;
 mod barrier;
+mod progress;
+mod show;
 mod text;
+mod watch;
 
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
@@ -16,9 +19,11 @@ use clap::Parser;
 use crate::export::StrandForm;
 use crate::render::SheetOptions;
 use crate::script::{self, Disk, Ending, Outcome, show_all};
-use crate::workbench::{self, RunError, RunOptions};
+use crate::workbench::{self, NewError, RunError, RunOptions};
 
-use args::{Arguments, Command, ParamsArguments, RunArguments, ScriptArguments};
+use args::{ApiArguments, Arguments, Command, NewArguments, ParamsArguments, RunArguments, ScriptArguments};
+use progress::Progress;
+use show::Show;
 
 /// Done.
 const DONE: u8 = 0;
@@ -46,12 +51,15 @@ pub fn main() -> ExitCode {
     };
     ExitCode::from(match arguments.command {
         Command::Run(run) => command_run(&run),
+        Command::Watch(arguments) => watch::watch(&arguments),
         Command::Params(params) => command_params(&params),
+        Command::New(new) => command_new(&new),
+        Command::Api(api) => command_api(&api),
     })
 }
 
-fn command_run(arguments: &RunArguments) -> u8 {
-    let options = RunOptions {
+fn run_options(arguments: &RunArguments) -> RunOptions {
+    RunOptions {
         script: script_options(&arguments.script),
         out: arguments.out.clone(),
         debug: arguments.debug,
@@ -63,16 +71,28 @@ fn command_run(arguments: &RunArguments) -> u8 {
         guides: arguments.guides && arguments.strands != StrandForm::None,
         count_inside: arguments.stats,
         triangles: arguments.triangles.map(|n| n as usize),
-    };
-    let report = match barrier::run(&arguments.script, move |task| workbench::run(&options, Arc::new(Disk), task)) {
+    }
+}
+
+fn command_run(arguments: &RunArguments) -> u8 {
+    let options = run_options(arguments);
+    let progress = Arc::new(Progress::new(!arguments.quiet));
+    let bar = Arc::clone(&progress);
+    let report = match barrier::run(&arguments.script, move |task| {
+        workbench::run(&options, Arc::new(Disk), &bar.listen(task))
+    }) {
         Ok(report) => report,
         Err(code) => return code,
     };
+    progress.end();
     tell(&report.outcome);
     match &report.written {
         Ok(written) => {
             if !arguments.quiet {
                 say(&text::summary(&report, written, arguments.timings));
+            }
+            if let Some(protocol) = arguments.show.and_then(Show::protocol) {
+                let _ = std::io::stderr().write_all(&show::picture(written, protocol, 2));
             }
             if arguments.stats {
                 print(&text::stats(&report, written));
@@ -109,6 +129,32 @@ fn command_params(arguments: &ParamsArguments) -> u8 {
         }
         Ending::Failed => SCRIPT,
         Ending::Cancelled => CANCELLED,
+    }
+}
+
+fn command_new(arguments: &NewArguments) -> u8 {
+    match workbench::new(&arguments.folder) {
+        Ok(files) => {
+            say(&text::made(&arguments.folder, &files));
+            DONE
+        }
+        Err(error) => {
+            say(&format!("error: {error}\n"));
+            if matches!(error, NewError::Name(_)) { USAGE } else { WRITE }
+        }
+    }
+}
+
+fn command_api(arguments: &ApiArguments) -> u8 {
+    match workbench::api(&arguments.out) {
+        Ok(written) => {
+            say(&format!("{:>8}  {} files in {}\n", "wrote", written.len(), arguments.out.display()));
+            DONE
+        }
+        Err(error) => {
+            say(&format!("error: {error}\n"));
+            WRITE
+        }
     }
 }
 

@@ -1,12 +1,13 @@
 //! What a finished run says.
 
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use serde_json::{Value, json};
 
-use crate::script::Outcome;
-use crate::workbench::{Report, Written};
+use crate::script::{Origin, Outcome};
+use crate::workbench::{Report, Stage, Written};
 
 /// For people: parts, times, files.
 pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
@@ -45,12 +46,18 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
             None => writeln!(out, "{:>8}  {before} triangles are within it", "budget"),
         };
     }
-    let stages: Vec<String> = report.stages.iter().map(|s| format!("{} {}", s.what, milliseconds(s.time))).collect();
+    let stage = |s: &Stage| match s.origin {
+        Some(Origin::Hit) => format!("{} {} (hit)", s.what, milliseconds(s.time)),
+        Some(Origin::Computed) | None => format!("{} {}", s.what, milliseconds(s.time)),
+    };
+    let stages: Vec<String> = report.stages.iter().map(stage).collect();
     let all: Duration = report.stages.iter().map(|s| s.time).sum();
     let _ = writeln!(out, "{:>8}  {}: {}", "time", milliseconds(all), stages.join(", "));
     if timings {
         for timing in &report.outcome.timings {
-            let _ = writeln!(out, "{:>8}  {} {} at {}", "", milliseconds(timing.time), timing.what, timing.source);
+            let origin = timing.origin.map_or_else(String::new, |o| format!(", {}", o.text()));
+            let (time, what) = (milliseconds(timing.time), &timing.what);
+            let _ = writeln!(out, "{:>8}  {time} {what} at {}{origin}", "", timing.source);
         }
     }
     for file in written {
@@ -59,16 +66,26 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
     out
 }
 
+/// What `coif new` made, and how to go on.
+pub fn made(folder: &Path, files: &[PathBuf]) -> String {
+    let mut out = String::new();
+    for file in files {
+        let _ = writeln!(out, "{:>8}  {}", "wrote", file.display());
+    }
+    let style = files.first().and_then(|f| f.file_name()).map(|f| f.to_string_lossy()).unwrap_or_default();
+    let _ = writeln!(out, "{:>8}  cd {} && coif run {style}", "next", folder.display());
+    out
+}
+
 /// For programs: one JSON object.
 pub fn stats(report: &Report, written: &[Written]) -> String {
-    let ms = |time: Duration| (time.as_secs_f64() * 1e5).round() / 100.0;
     let stages: serde_json::Map<String, Value> =
         report.stages.iter().map(|s| (s.what.to_owned(), json!(ms(s.time)))).collect();
     let calls: Vec<Value> = report
         .outcome
         .timings
         .iter()
-        .map(|t| json!({ "call": t.what, "source": t.source, "ms": ms(t.time) }))
+        .map(|t| json!({ "call": t.what, "source": t.source, "ms": ms(t.time), "origin": t.origin.map(Origin::text) }))
         .collect();
     let files: Vec<Value> =
         written.iter().map(|f| json!({ "path": f.path.to_string_lossy(), "bytes": f.bytes })).collect();
@@ -83,6 +100,11 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "warnings": report.outcome.diagnostics.len(),
     });
     format!("{object}\n")
+}
+
+/// Milliseconds with two decimals.
+pub fn ms(time: Duration) -> f64 {
+    (time.as_secs_f64() * 1e5).round() / 100.0
 }
 
 /// The parameters of a script, one line each.

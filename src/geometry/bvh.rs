@@ -152,6 +152,47 @@ impl Bvh {
     }
 }
 
+impl Bvh {
+    /// The greatest `normal . x` over all triangles that come within `reach` of `p`; negative infinity where none does.
+    pub fn support_within(&self, p: Vec3, reach: f32, normal: Vec3) -> f32 {
+        if self.corners.is_empty() || !p.is_finite() {
+            return f32::NEG_INFINITY;
+        }
+        let (p, normal, reach) = (Vec3A::from(p), Vec3A::from(normal), reach * reach);
+        let is_up = normal.cmpge(Vec3A::ZERO);
+        let support = |node: u32| {
+            let aabb = &self.tree.nodes[node as usize].aabb;
+            normal.dot(Vec3A::select(is_up, aabb.max, aabb.min))
+        };
+        let mut best = f32::NEG_INFINITY;
+        let mut stack = vec![(0_u32, support(0))];
+        while let Some((index, most)) = stack.pop() {
+            if most <= best || box_distance(&self.tree, index, p) > reach {
+                continue;
+            }
+            let node = &self.tree.nodes[index as usize];
+            if node.prim_count == 0 {
+                let (left, right) = (node.first_index, node.first_index + 1);
+                let mut children = [(left, support(left)), (right, support(right))];
+                // The more promising one is looked at first.
+                if children[0].1 > children[1].1 {
+                    children.swap(0, 1);
+                }
+                stack.extend(children);
+                continue;
+            }
+            for slot in node.first_index..node.first_index + node.prim_count {
+                let corners = &self.corners[slot as usize];
+                let most = corners.iter().map(|&c| normal.dot(c)).fold(f32::NEG_INFINITY, f32::max);
+                if most > best && (closest_on_triangle(p, corners).0 - p).length_squared() <= reach {
+                    best = most;
+                }
+            }
+        }
+        best
+    }
+}
+
 /// Squared distance from `p` to a node's box.
 fn box_distance(tree: &Bvh2, node: u32, p: Vec3A) -> f32 {
     let aabb = &tree.nodes[node as usize].aabb;

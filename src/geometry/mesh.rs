@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::Bounds;
+use crate::math::Digest;
 
 /// A named set of triangles: an OBJ group or object, a glTF mesh or material.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,6 +69,15 @@ pub enum MeshError {
 }
 
 impl Mesh {
+    /// Feeds all of it to a key.
+    pub fn digest(&self, into: &mut Digest) {
+        into.vectors(&self.positions).numbers(self.triangles.as_flattened()).vectors(&self.normals).planar(&self.uvs);
+        into.number(self.groups.len() as u64);
+        for group in &self.groups {
+            into.bytes(group.name.as_bytes()).numbers(&group.triangles);
+        }
+    }
+
     /// Checks everything that the rest of Coif relies on.
     ///
     /// # Errors

@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
 use super::Bounds;
+use crate::math::Digest;
 
 /// Where a strand leaves the skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +21,20 @@ pub struct Root {
     pub uv: Vec2,
     /// Triangle of the head mesh.
     pub triangle: u32,
+}
+
+impl Root {
+    /// Everything about it, for a key.
+    pub fn bytes(&self) -> [u8; 44] {
+        let mut out = [0; 44];
+        out[..8].copy_from_slice(&self.id.to_le_bytes());
+        out[8..12].copy_from_slice(&self.triangle.to_le_bytes());
+        let (p, n) = (self.position, self.normal);
+        for (to, f) in out[12..].chunks_exact_mut(4).zip([p.x, p.y, p.z, n.x, n.y, n.z, self.uv.x, self.uv.y]) {
+            to.copy_from_slice(&f.to_le_bytes());
+        }
+        out
+    }
 }
 
 /// Many strands, as a structure of arrays.
@@ -116,6 +132,31 @@ impl Strands {
         self.source.push(source);
     }
 
+    /// Feeds the geometry to a key: everything but where in a script it was made.
+    pub fn digest(&self, into: &mut Digest) {
+        // In pieces of a fixed size, each with a key of its own: the same on any number of threads.
+        let pieces: Vec<u128> = (self.points.par_chunks(1 << 17))
+            .map(|piece| {
+                let mut digest = Digest::new("nodes");
+                digest.vectors(piece);
+                digest.finish()
+            })
+            .collect();
+        into.number(self.points.len() as u64).packed(&pieces, |k| k.to_le_bytes());
+        into.numbers(&self.offsets).packed(&self.roots, Root::bytes).numbers(&self.guide);
+        into.packed(&self.source, |s| s.to_le_bytes()).bytes(&self.stage);
+    }
+
+    /// Memory that it takes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.points)
+            + size_of_val(&*self.offsets)
+            + size_of_val(&*self.roots)
+            + size_of_val(&*self.guide)
+            + size_of_val(&*self.source)
+            + self.stage.len()
+    }
+
     /// Arc length of strand `i`, cm.
     pub fn length(&self, i: usize) -> f32 {
         self.strand(i).windows(2).map(|w| w[0].distance(w[1])).sum()
@@ -123,7 +164,9 @@ impl Strands {
 
     /// Bounds of all nodes.
     pub fn bounds(&self) -> Bounds {
-        Bounds::of(self.points.iter().copied())
+        let pieces = self.points.par_chunks(1 << 15).map(|piece| Bounds::of(piece.iter().copied()));
+        // Least and greatest are the same in any order.
+        pieces.reduce(|| Bounds::EMPTY, Bounds::union)
     }
 
     /// Checks everything that the rest of Coif relies on.

@@ -94,7 +94,8 @@ impl Clear<'_> {
                 continue;
             }
             let clearance = solid.clearance(b).max(0.0);
-            if clearance >= self.body.margin && (k == 1 || is_covered(solid, (a, free), (b, clearance), 2)) {
+            let is_free = || solid.is_surely_outside(a, b) || is_covered(solid, (a, free), (b, clearance), 2);
+            if clearance >= self.body.margin && (k == 1 || is_free()) {
                 (free, was_inside) = (clearance, false);
                 continue;
             }
@@ -109,7 +110,10 @@ impl Clear<'_> {
                 free = reach;
                 continue;
             };
-            let crosses = k > 1 && free + near.distance.max(0.0) <= way && solid.segment_hit(a, b).is_some();
+            let crosses = k > 1
+                && free + near.distance.max(0.0) <= way
+                && !solid.is_surely_outside(a, b)
+                && solid.segment_hit(a, b).is_some();
             was_inside = near.distance < 0.0;
             free = near.distance.max(0.0);
             if near.distance < 0.98 * margin {
@@ -267,7 +271,10 @@ pub fn is_inside(solid: &Solid, points: &[Vec3]) -> bool {
         let clearance = solid.clearance(b).max(0.0);
         let before = std::mem::replace(&mut free, clearance);
         (clearance == 0.0 && solid.contains(b))
-            || (k > 1 && !is_covered(solid, (a, before), (b, clearance), 2) && solid.segment_hit(a, b).is_some())
+            || (k > 1
+                && !solid.is_surely_outside(a, b)
+                && !is_covered(solid, (a, before), (b, clearance), 2)
+                && solid.segment_hit(a, b).is_some())
     })
 }
 

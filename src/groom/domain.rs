@@ -150,7 +150,7 @@ crate::params! {
         /// Where it acts.
         r#box: OrientedBox;
         /// Takes a number from 0 to 1, returns the offsets away from the head and to the side, in cm.
-        curve: Function;
+        curve: Function, takes("(u: number): number, number?");
         /// What the function's number runs over.
         over: Measure = Measure::Period;
         /// Length along the strand that the function runs over; not used over "part".

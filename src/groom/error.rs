@@ -75,6 +75,24 @@ pub enum GroomError {
     Strands(#[from] crate::geometry::StrandsError),
 }
 
+impl GroomError {
+    /// What to do about it.
+    pub fn hint(&self) -> Option<String> {
+        match self {
+            Self::Nothing { .. } => Some("is the region empty, or its density 0?".into()),
+            Self::TooMany { .. } => Some("a real head has 100000 to 150000 hairs; 64 nodes each are plenty".into()),
+            Self::Step { length, .. } => Some(format!("make the step a small part of the length: {}", length / 50.0)),
+            Self::EmptyBox { .. } => Some("every edge must be longer than 0, and finite".into()),
+            Self::WrongKind { queue, .. } => Some(if *queue == "forces" {
+                "natural domains go into `strands:natural { ... }`, after growing".into()
+            } else {
+                "directional and gather domains go into a queue for `guides:grow { ... }`".into()
+            }),
+            Self::Cancelled(_) | Self::Value { .. } | Self::Count { .. } | Self::Strands(_) => None,
+        }
+    }
+}
+
 /// Greatest number of strands in one call.
 pub const MAX_STRANDS: u64 = 5_000_000;
 /// Greatest number of nodes in one call.

@@ -26,8 +26,8 @@ crate::params! {
     /// Fills the scalp with strands between guides.
     pub struct FillOptions("Strands:fill") {
         /// How many strands.
-        strands: usize = 40_000, range(1.0, 5_000_000.0);
-        /// Nodes per strand; as many as the guides have, at most 128, when left out.
+        strands: usize = 40_000, range(1.0, 1e15);
+        /// Nodes per strand; when left out as many as the guides' bends need, at most as many as the guides have or 128.
         nodes: Option<usize>, range(2.0, 4096.0);
         /// How many guides a strand follows at most.
         neighbours: usize = 4, range(1.0, 8.0);
@@ -101,8 +101,7 @@ pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
     }
     check_value("the noise", options.noise, 0.0, f32::MAX)?;
     check_value("the thickness", options.thickness, 0.0, f32::MAX)?;
-    let most = (0..input.guides.count()).map(|g| input.guides.range(g).len()).max().unwrap_or(2);
-    let nodes = options.nodes.unwrap_or(most.min(128)).max(2);
+    let nodes = options.nodes.unwrap_or_else(|| usual_nodes(input.guides)).max(2);
     let n = input.roots.len();
     check_size(n as u64, n as u64 * nodes as u64)?;
 
@@ -158,6 +157,46 @@ pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
         layout::compact(&mut strands, &counts);
     }
     Ok(Warned { value: strands, warnings })
+}
+
+/// Farthest that a member's segment may lie from the arc that it stands for, cm: half a pixel of a picture of 1024.
+const SAGITTA: f32 = 0.02;
+/// Greatest turn from segment to segment, radians: 11 segments per turn of a tight curl.
+const TURN: f32 = 0.57;
+/// Longest segment, cm: what lies over the head must not cut through it.
+const LONGEST: f32 = 1.2;
+
+/// Nodes that a member needs to follow the bends of the guides: an arc of curvature k with segments of length h is left
+/// by k h^2 / 8 and turns by k h. Of a guide's curvatures and of the guides the sharpest tenth does not count, for they
+/// may have kinks.
+fn usual_nodes(guides: &Strands) -> usize {
+    let most = (0..guides.count()).map(|g| guides.range(g).len()).max().unwrap_or(2).min(128);
+    let mut wanted: Vec<f32> = (0..guides.count())
+        .into_par_iter()
+        .map_init(Vec::new, |curvatures: &mut Vec<f32>, g| {
+            let points = guides.strand(g);
+            curvatures.clear();
+            // Over four segments, so that the noise of single steps does not look like a bend.
+            curvatures.extend(points.windows(5).map(|w| {
+                let (a, b) = ((w[2] - w[0]).normalize_or_zero(), (w[4] - w[2]).normalize_or_zero());
+                let way = 0.5 * w.windows(2).map(|s| s[0].distance(s[1])).sum::<f32>();
+                a.distance(b) / way.max(1e-6)
+            }));
+            let k = nine_tenths(curvatures).max(1e-6);
+            let h = (8.0 * SAGITTA / k).sqrt().min(TURN / k).min(LONGEST);
+            curve::length(points) / h
+        })
+        .collect();
+    ((nine_tenths(&mut wanted).ceil() as usize + 1).max(16)).min(most)
+}
+
+/// The value that a tenth of all exceeds; 0 for none.
+fn nine_tenths(values: &mut [f32]) -> f32 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let at = values.len() * 9 / 10;
+    *values.select_nth_unstable_by(at, f32::total_cmp).1
 }
 
 /// Guides with equally many nodes each, and what members ask of them.

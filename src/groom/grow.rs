@@ -33,7 +33,7 @@ crate::params! {
     /// A local queue and the guides that it acts on.
     pub struct LocalOptions("local queue") {
         /// Takes a guide's root (a vector), returns true if the queue acts on that guide.
-        r#where: Function;
+        r#where: Function, takes("(root: vector): boolean");
         /// The queue.
         queue: Arc<Queue>;
     }

@@ -14,7 +14,7 @@ crate::params! {
     /// Guides: the strands that are grown through the domains, each standing for one wisp.
     pub struct GuideOptions("coif.guides") {
         /// How many.
-        count: usize = 800, range(1.0, 5_000_000.0);
+        count: usize = 800, range(1.0, 1e15);
         /// The longest strand's length.
         length: f32 = 25.0, unit("cm"), range(0.05, 1000.0);
         /// How much shorter strands may be, as a part of the length: 0 all alike, 1 down to nothing.

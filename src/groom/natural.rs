@@ -30,7 +30,7 @@ crate::params! {
         /// The natural domains.
         domains: Vec<Arc<Domain>>, positional();
         /// Takes a strand's root (a vector), returns true for the strands to change; all when left out.
-        r#where: Option<Function>;
+        r#where: Option<Function>, takes("(root: vector): boolean");
         /// Least distance of hair from the skin.
         margin: f32 = 0.05, unit("cm"), range(0.005, 10.0);
         /// Another seed gives other random numbers.

@@ -77,7 +77,7 @@ impl HeadError {
                 Some(format!("did you mean `{near}`?"))
             }
             Self::UnknownLandmark { nearest: None, .. } => Some(list(&Landmarks::NAMES)),
-            Self::UnknownBox { nearest: None, .. } => Some(list(&super::space::BOXES)),
+            Self::UnknownBox { nearest: None, .. } => Some(list(&super::Head::BOXES)),
             Self::PlaceNotFinite { .. } => Some("give three finite numbers in cm".into()),
             Self::BadLandmarks { .. } => Some("place the landmarks in the head's own file space, in cm".into()),
         }

@@ -26,12 +26,13 @@ mod symmetry;
 mod tests;
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use glam::{Affine3A, Vec2, Vec3};
 
 use crate::geometry::sample::{BlueNoise, Patch, Sample};
 use crate::geometry::{Bvh, Mesh, Root, Solid};
+use crate::math::Digest;
 use crate::params::{Object, nearest};
 use crate::task::{Warned, Warning};
 
@@ -65,6 +66,7 @@ pub struct Head {
     patch: Arc<Patch>,
     /// Orders of places by seed, so that guides and members share their work.
     orders: Mutex<BTreeMap<u64, BlueNoise>>,
+    key: OnceLock<u128>,
 }
 
 impl Object for Head {
@@ -152,7 +154,23 @@ impl Head {
             ears,
             patch: Arc::new(patch),
             orders: Mutex::default(),
+            key: OnceLock::new(),
         })
+    }
+
+    /// The key of its content: surface, landmarks and place, but not its name.
+    pub fn key(&self) -> u128 {
+        *self.key.get_or_init(|| {
+            let mut digest = Digest::new("head");
+            self.mesh.digest(&mut digest);
+            digest.data(&self.landmarks).data(&self.placement).finish()
+        })
+    }
+
+    /// Memory that it takes, roughly: the mesh, and the trees and normals of its solid.
+    pub fn bytes(&self) -> usize {
+        // A few hundred bytes a triangle, the orders of places and the octree a few megabytes.
+        self.mesh.positions.len() * 64 + self.mesh.triangles.len() * 250 + (16 << 20)
     }
 
     /// A landmark plus an offset, which is multiplied by [`Head::scale`].

@@ -16,6 +16,7 @@ use super::sampled::Lattice;
 use super::{Head, scalp};
 use crate::geometry::Root;
 use crate::geometry::sample::Sample;
+use crate::math::Digest;
 use crate::math::rng::Key;
 use crate::params::{Object, nearest};
 
@@ -310,6 +311,31 @@ impl Region {
             }
         }
         area
+    }
+
+    /// Feeds what it is to a key, for the head that it is of.
+    pub fn digest(&self, into: &mut Digest) {
+        match &*self.0 {
+            Shape::Everything => into.number(0),
+            Shape::Polygon(polygon) => into.number(1).data(polygon),
+            Shape::Ears(ears, height) => into.number(2).data(ears).floats(&[*height]),
+            Shape::Triangles(which) => into.number(3).flags(which),
+            // The lattice depends on the head alone.
+            Shape::Sampled { lattice: _, values, crisp } => into.number(4).floats(values).flags(&[*crisp]),
+            Shape::Mask(mask) => into.number(5).number(mask.width as u64).floats(&mask.values),
+            Shape::Union(a, b) => two(into.number(6), a, b),
+            Shape::Intersection(a, b) => two(into.number(7), a, b),
+            Shape::Complement(a) => one(into.number(8), a),
+            Shape::Times(a, b) => two(into.number(9), a, b),
+            Shape::Constant(density) => into.number(10).floats(&[*density]),
+        };
+        fn one<'a>(into: &'a mut Digest, a: &Region) -> &'a mut Digest {
+            a.digest(into);
+            into
+        }
+        fn two<'a>(into: &'a mut Digest, a: &Region, b: &Region) -> &'a mut Digest {
+            one(one(into, a), b)
+        }
     }
 
     /// Checks that it covers something.

@@ -9,9 +9,6 @@ use crate::geometry::{Mesh, OrientedBox, Solid};
 use crate::math::trig;
 use crate::params::nearest;
 
-/// Names for [`Head::box_named`].
-pub(super) const BOXES: [&str; 7] = ["all", "behind", "front", "left", "right", "above", "below"];
-
 /// From head space to the landmarks' space: the origin between the ears, turned about Y so that the ears lie left
 /// and right.
 pub(super) fn placement(marks: &Landmarks) -> Result<Affine3A, HeadError> {
@@ -67,6 +64,9 @@ pub(super) fn ears(mesh: &Mesh, solid: &Solid, marks: &Landmarks) -> [Option<Ear
 }
 
 impl Head {
+    /// Names for [`Head::box_named`].
+    pub const BOXES: [&'static str; 7] = ["all", "behind", "front", "left", "right", "above", "below"];
+
     /// A generous box in head space, named after the side of the ears it lies on.
     ///
     /// `all` reaches, times [`Head::scale`], 60 cm to the sides, 60 cm forward and back, 40 cm up and 120 cm down.
@@ -85,7 +85,7 @@ impl Head {
             "right" => hi.x = 0.0,
             "above" => lo.y = 0.0,
             "below" => hi.y = 0.0,
-            _ => return Err(HeadError::UnknownBox { name: name.to_owned(), nearest: nearest(name, BOXES) }),
+            _ => return Err(HeadError::UnknownBox { name: name.to_owned(), nearest: nearest(name, Head::BOXES) }),
         }
         Ok(OrientedBox::between(lo * self.scale, hi * self.scale))
     }

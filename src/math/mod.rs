@@ -5,7 +5,9 @@
 //! stream, so results do not depend on order or on threads.
 
 pub mod colour;
+pub mod digest;
 pub mod rng;
 pub mod trig;
 
 pub use colour::Colour;
+pub use digest::Digest;

@@ -52,6 +52,13 @@ pub struct Field {
     pub default: Option<String>,
     /// True when it is the list part of the table.
     pub is_positional: bool,
+    /// True when it stands for every name that a script may choose itself.
+    pub is_any_name: bool,
+    /// What it takes, told more closely than `kind` does: `(root: vector): boolean` for a function, `Parting|vector[]`
+    /// for anything else. For the editor definitions and the reference.
+    pub takes: Option<&'static str>,
+    /// The fields of the struct that it is, or that its list is of.
+    pub nested: Option<fn() -> Vec<Field>>,
 }
 
 impl Field {
@@ -60,7 +67,18 @@ impl Field {
         let default = T::absent().map(|_| "nil".to_owned());
         // A field that is a word of Rust (`box`, `where`) is written `r#box` there and `box` in a script.
         let name = name.strip_prefix("r#").unwrap_or(name);
-        Self { name, doc: doc.trim(), kind: T::kind(), unit: T::unit(), range: None, default, is_positional: false }
+        Self {
+            name,
+            doc: doc.trim(),
+            kind: T::kind(),
+            unit: T::unit(),
+            range: None,
+            default,
+            is_positional: false,
+            is_any_name: false,
+            takes: None,
+            nested: T::nested(),
+        }
     }
 
     /// With a default.
@@ -89,6 +107,33 @@ impl Field {
     pub fn positional(mut self) -> Self {
         self.is_positional = true;
         self
+    }
+
+    /// Standing for every name that a script may choose itself.
+    #[must_use]
+    pub fn any_name(mut self) -> Self {
+        self.is_any_name = true;
+        self
+    }
+
+    /// With a closer word on what it takes.
+    #[must_use]
+    pub fn takes(mut self, what: &'static str) -> Self {
+        self.takes = Some(what);
+        self
+    }
+
+    /// A text that must be one of these.
+    #[must_use]
+    pub fn choices(mut self, texts: &'static [&'static str]) -> Self {
+        self.kind = Kind::Choice(texts);
+        self
+    }
+
+    /// Its limits in words: `0 to 10`, `1 or more`.
+    pub fn interval(&self) -> Option<String> {
+        // An upper end that no one reaches only says "no limit here": what it costs is told elsewhere.
+        self.range.map(|(lo, hi)| if hi >= 1e12 { format!("{lo} or more") } else { format!("{lo} to {hi}") })
     }
 
     /// True when a script must give it.

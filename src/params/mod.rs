@@ -38,7 +38,8 @@ pub use value::{Handle, Object, Table, Value};
 /// Declares a parameter struct and everything derived from it; see the [module](crate::params) for an example.
 ///
 /// `field: Type;` is required, `field: Type = default;` has a default, `field: Option<Type>;` may be left out. After
-/// that, in any order: `unit("cm")`, `range(lo, hi)` (both included), `positional()` (the list part of the table).
+/// that, in any order: `unit("cm")`, `range(lo, hi)` (both included), `positional()` (the list part of the table), and for
+/// the editor `takes("(root: vector): boolean")` and `choices(&["a", "b"])` where the type alone says too little.
 #[macro_export]
 macro_rules! params {
     (
@@ -86,6 +87,9 @@ macro_rules! params {
         impl $crate::params::FieldType for $name {
             fn kind() -> $crate::params::Kind {
                 $crate::params::Kind::Struct($lua)
+            }
+            fn nested() -> Option<fn() -> Vec<$crate::params::Field>> {
+                Some(<Self as $crate::params::Params>::fields)
             }
             fn read(value: &$crate::params::Value, reader: &mut $crate::params::Reader) -> Option<Self> {
                 match value {

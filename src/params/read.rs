@@ -27,6 +27,10 @@ pub trait FieldType: Sized {
     fn unit() -> Option<&'static str> {
         None
     }
+    /// The fields, when it is a struct or a list of structs.
+    fn nested() -> Option<fn() -> Vec<Field>> {
+        None
+    }
     /// As a number, for the range check.
     fn number(&self) -> Option<f64> {
         None
@@ -142,7 +146,8 @@ impl Reader {
                 return Some(read);
             }
             let unit = field.unit.map(|u| format!(" {u}")).unwrap_or_default();
-            reader.problem(format!("`{n}` is out of range"), Some(format!("it takes {lo} to {hi}{unit}")))
+            let takes = field.interval().unwrap_or_default();
+            reader.problem(format!("`{n}` is out of range"), Some(format!("it takes {takes}{unit}")))
         };
         if field.is_positional { read(self) } else { self.inside(field.name, read) }
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::{FieldType, Kind, Object, Reader, Value};
+use super::{Field, FieldType, Kind, Object, Reader, Value};
 use crate::math::Colour;
 
 /// A unit vector, given as a vector of any length but zero.
@@ -266,6 +266,9 @@ impl<T: FieldType> FieldType for Option<T> {
     fn unit() -> Option<&'static str> {
         T::unit()
     }
+    fn nested() -> Option<fn() -> Vec<Field>> {
+        T::nested()
+    }
     fn number(&self) -> Option<f64> {
         self.as_ref().and_then(T::number)
     }
@@ -277,6 +280,9 @@ impl<T: FieldType> FieldType for Option<T> {
 impl<T: FieldType> FieldType for Vec<T> {
     fn kind() -> Kind {
         Kind::List(Box::new(T::kind()))
+    }
+    fn nested() -> Option<fn() -> Vec<Field>> {
+        T::nested()
     }
     fn read(value: &Value, reader: &mut Reader) -> Option<Self> {
         let Value::Table(table) = value else { return reader.wrong_type("a list", value) };
@@ -348,6 +354,7 @@ mod tests {
         let s = read::<Sample>(&t).unwrap();
         assert_eq!((s.length, s.way, s.direction.0), (3.0, Way::Down, Vec3::Y));
         assert_eq!(s.turn.unwrap().radians, std::f32::consts::FRAC_PI_2);
+        assert!(s.list.is_empty());
     }
 
     #[test]

@@ -50,13 +50,12 @@ pub fn draw(bundles: &[Bundle], canvas: &Canvas, task: &Task) -> Result<Vec<u8>,
     let tiles = Tiles::new(camera.width, camera.height, edge * ss);
     let chunks = gather(bundles, camera, tiles, task)?;
     task.progress("hair: tiles", 0.6);
-    let far = depth_range(&chunks);
     let drawn: Result<Vec<Vec<[u8; 3]>>, Cancelled> = (0..tiles.count())
         .into_par_iter()
         .map(|tile| {
             task.check()?;
             let mut pixels = Tile::new(canvas, tiles, tile);
-            pixels.lines(bundles, &chunks, canvas, tile, far);
+            pixels.lines(bundles, &chunks, canvas, tile);
             Ok(pixels.resolve(canvas, edge, ss))
         })
         .collect();
@@ -73,17 +72,12 @@ pub fn draw(bundles: &[Bundle], canvas: &Canvas, task: &Task) -> Result<Vec<u8>,
     Ok(picture)
 }
 
-/// Nearest depth, and depth steps of the sorting key per cm.
-fn depth_range(chunks: &[Chunk]) -> (f32, f32) {
-    let (far, near) = chunks
-        .par_iter()
-        .map(|c| c.vertices.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), v| (a.min(v.at.z), b.max(v.at.z))))
-        .reduce(|| (f32::INFINITY, f32::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
-    (near, DEPTHS / (near - far).max(1e-3))
-}
-
-/// Steps of depth in a sorting key: 20 bits.
-const DEPTHS: f32 = 1_048_575.0;
+/// Bits of a sorting key for the segment within its chunk: 256 lines of up to 4096 nodes, cut a few times. The chunk has
+/// the other 20.
+const SEGMENT_BITS: u32 = 24;
+/// Edge in pixels of the blocks whose finished ones are known, and how many there are along a tile.
+const BLOCK: usize = 8;
+const BLOCKS: usize = 4;
 
 #[derive(Clone, Copy)]
 struct Pixel {
@@ -114,6 +108,10 @@ struct Tile {
     height: usize,
     pixels: Vec<Pixel>,
     closed: usize,
+    /// Per block: pixels that are not finished.
+    left: [u16; BLOCKS * BLOCKS],
+    /// One bit per finished block.
+    finished: u16,
 }
 
 impl Tile {
@@ -127,29 +125,70 @@ impl Tile {
                 pixels[y * edge + x].surface = canvas.layer.depth[(y0 + y) * canvas.layer.width + x0 + x];
             }
         }
-        Self { edge, x0, y0, width, height, pixels, closed: 0 }
+        let mut tile = Self { edge, x0, y0, width, height, pixels, closed: 0, left: [0; BLOCKS * BLOCKS], finished: 0 };
+        for y in 0..height {
+            for x in 0..width {
+                tile.left[(y / BLOCK).min(BLOCKS - 1) * BLOCKS + (x / BLOCK).min(BLOCKS - 1)] += 1;
+            }
+        }
+        // Blocks beyond the picture's border have nothing to finish.
+        tile.finished = (0..BLOCKS * BLOCKS).filter(|&b| tile.left[b] == 0).fold(0, |bits, b| bits | 1 << b);
+        tile
     }
 
     /// Lays all segments of the tile over each other, nearest first.
-    fn lines(&mut self, bundles: &[Bundle], chunks: &[Chunk], canvas: &Canvas, tile: usize, far: (f32, f32)) {
-        // Copied once in the order of memory: by depth they lie scattered over all strands.
-        let (mut order, mut pieces) = (Vec::<u64>::new(), Vec::new());
-        for chunk in chunks {
-            let bundle = &bundles[chunk.bundle as usize];
-            for &s in chunk.segments(tile) {
-                let (a, b) = (&chunk.vertices[s as usize], &chunk.vertices[s as usize + 1]);
-                let behind = ((far.0 - 0.5 * (a.at.z + b.at.z)) * far.1).clamp(0.0, DEPTHS) as u64;
-                order.push(behind << 32 | pieces.len() as u64);
-                let width = [a, b].map(|v| bundle.width[0] + (bundle.width[1] - bundle.width[0]) * v.along());
-                pieces.push(Piece { ends: [a.at, b.at], width, bundle, chunk, segment: s as usize });
-            }
+    fn lines(&mut self, bundles: &[Bundle], chunks: &[Chunk], canvas: &Canvas, tile: usize) {
+        let mut order = Vec::<u64>::new();
+        for (c, chunk) in chunks.iter().enumerate() {
+            order.extend(
+                chunk.segments(tile).iter().map(|&s| (s >> 32) << 44 | (c as u64) << SEGMENT_BITS | s & 0xffff_ffff),
+            );
         }
-        order.sort_unstable();
-        for key in order {
-            self.segment(&pieces[(key & 0xffff_ffff) as usize], canvas);
-            if self.closed == self.width * self.height {
-                break;
+        // Nearest first, and only as much in order as it takes: once the nearest hair has closed the tile, the rest
+        // does not matter.
+        let mut rest = &mut order[..];
+        while !rest.is_empty() && self.closed < self.width * self.height {
+            let count = (rest.len() / 6).max(1024).min(rest.len());
+            if count < rest.len() {
+                rest.select_nth_unstable(count);
             }
+            let (near, beyond) = rest.split_at_mut(count);
+            near.sort_unstable();
+            for &key in near.iter() {
+                let chunk = &chunks[(key >> SEGMENT_BITS) as usize & ((1 << (44 - SEGMENT_BITS)) - 1)];
+                let segment = (key & ((1 << SEGMENT_BITS) - 1)) as usize;
+                let ends = [&chunk.vertices[segment], &chunk.vertices[segment + 1]];
+                let bundle = &bundles[chunk.bundle as usize];
+                if self.is_hidden(ends[0].at, ends[1].at, bundle.width[0].max(bundle.width[1])) {
+                    continue;
+                }
+                let width = ends.map(|v| bundle.width[0] + (bundle.width[1] - bundle.width[0]) * v.along());
+                let ends = ends.map(|v| v.at);
+                self.segment(&Piece { ends, width, bundle, chunk, segment }, canvas);
+            }
+            rest = beyond;
+        }
+    }
+
+    /// True when every block of pixels that a line may touch is finished.
+    fn is_hidden(&self, a: Vec3, b: Vec3, width: f32) -> bool {
+        let margin = 0.5 * width + 1.5;
+        let range = |a: f32, b: f32, origin: usize| {
+            let block = |x: f32| (((x - origin as f32) / BLOCK as f32).max(0.0) as usize).min(BLOCKS - 1);
+            block(a.min(b) - margin)..=block(a.max(b) + margin)
+        };
+        let (columns, rows) = (range(a.x, b.x, self.x0), range(a.y, b.y, self.y0));
+        let across = columns.fold(0_u16, |bits, x| bits | 1 << x);
+        rows.fold(true, |hidden, y| hidden && (self.finished >> (y * BLOCKS)) & across == across)
+    }
+
+    /// Notes that pixel `i` is finished.
+    fn close(&mut self, i: usize) {
+        self.closed += 1;
+        let block = (i / self.edge / BLOCK).min(BLOCKS - 1) * BLOCKS + (i % self.edge / BLOCK).min(BLOCKS - 1);
+        self.left[block] -= 1;
+        if self.left[block] == 0 {
+            self.finished |= 1 << block;
         }
     }
 
@@ -211,7 +250,9 @@ impl Tile {
                 let lit = if shaded { 0.45 + 0.80 * pixel.open } else { 1.0 };
                 pixel.light += (ca + (cb - ca) * t) * (pixel.open * cover * lit);
                 pixel.open *= 1.0 - cover;
-                self.closed += usize::from(pixel.open < CLOSED);
+                if pixel.open < CLOSED {
+                    self.close(i);
+                }
             }
         }
     }
@@ -230,7 +271,9 @@ impl Tile {
         let before = pixel.open;
         pixel.open *= 1.0 - cover;
         pixel.surface = f32::NEG_INFINITY;
-        self.closed += usize::from(pixel.open < CLOSED && before >= CLOSED);
+        if pixel.open < CLOSED && before >= CLOSED {
+            self.close(i);
+        }
     }
 
     /// Surfaces and background behind the lines, the mean over supersamples, sRGB.

@@ -85,8 +85,9 @@ pub struct Chunk {
     /// Colours of the vertices as far as they are known: 10 bits per channel of the square root, and one that is always
     /// set. Tiles that share a vertex find the same colour, so it does not matter which comes first.
     colours: Vec<AtomicU32>,
-    /// Segments, tile after tile.
-    segments: Vec<u32>,
+    /// Segments, tile after tile: how far behind the nearest vertex in the upper half, which segment in the lower. So a
+    /// tile knows the order without looking at the vertices, which lie scattered.
+    segments: Vec<u64>,
     /// Where each tile begins in `segments`, and the end.
     starts: Vec<u32>,
 }
@@ -118,8 +119,8 @@ impl Chunk {
         beside(Some(vertex + 1)) - beside(vertex.checked_sub(1))
     }
 
-    /// Segments that touch a tile.
-    pub fn segments(&self, tile: usize) -> &[u32] {
+    /// Segments that touch a tile, each with its step of [`DEPTHS`] in the upper 32 bits.
+    pub fn segments(&self, tile: usize) -> &[u64] {
         &self.segments[self.starts[tile] as usize..self.starts[tile + 1] as usize]
     }
 }
@@ -170,7 +171,8 @@ pub fn gather(bundles: &[Bundle], camera: &Camera, tiles: Tiles, task: &Task) ->
         let count = bundle.offsets.len().saturating_sub(1);
         jobs.extend((0..count).step_by(CHUNK).map(|first| (b, first, (first + CHUNK).min(count))));
     }
-    jobs.par_iter()
+    let lines: Result<Vec<Vec<Vertex>>, Cancelled> = jobs
+        .par_iter()
         .map(|&(b, first, end)| {
             task.check()?;
             let mut vertices = Vec::new();
@@ -179,9 +181,41 @@ pub fn gather(bundles: &[Bundle], camera: &Camera, tiles: Tiles, task: &Task) ->
             for line in first..end {
                 simplify(bundle, line, (line - first) as u16, camera, &mut nodes, &mut vertices);
             }
-            Ok(sorted(b as u32, first, vertices, bundle.width, tiles))
+            Ok(vertices)
         })
-        .collect()
+        .collect();
+    let lines = lines?;
+    task.check()?;
+    let depths = Depths::of(&lines);
+    Ok(lines
+        .into_par_iter()
+        .zip(&jobs)
+        .map(|(vertices, &(b, first, _))| sorted(b as u32, first, vertices, bundles[b].width, tiles, depths))
+        .collect())
+}
+
+/// Steps of depth in which segments are ordered: 20 bits.
+pub const DEPTHS: f32 = 1_048_575.0;
+
+/// Depth in steps behind the nearest vertex.
+#[derive(Clone, Copy)]
+struct Depths {
+    nearest: f32,
+    steps_per_cm: f32,
+}
+
+impl Depths {
+    fn of(lines: &[Vec<Vertex>]) -> Self {
+        let (far, near) = lines
+            .par_iter()
+            .map(|l| l.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), v| (a.min(v.at.z), b.max(v.at.z))))
+            .reduce(|| (f32::INFINITY, f32::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+        Self { nearest: near, steps_per_cm: DEPTHS / (near - far).max(1e-3) }
+    }
+
+    fn step(self, z: f32) -> u64 {
+        ((self.nearest - z) * self.steps_per_cm).clamp(0.0, DEPTHS) as u64
+    }
 }
 
 /// Appends a line of the bundle, `number` within its chunk, without the nodes that do not show.
@@ -240,7 +274,7 @@ fn follows(nodes: &[Vec3]) -> bool {
 }
 
 /// A chunk with its segments counted into tiles.
-fn sorted(bundle: u32, first: usize, vertices: Vec<Vertex>, width: [f32; 2], tiles: Tiles) -> Chunk {
+fn sorted(bundle: u32, first: usize, vertices: Vec<Vertex>, width: [f32; 2], tiles: Tiles, depths: Depths) -> Chunk {
     let margin = Vec3::splat(0.5 * width[0].max(width[1]) + 1.0);
     let touched = |i: usize| {
         let (a, b) = (&vertices[i], &vertices[i + 1]);
@@ -260,8 +294,9 @@ fn sorted(bundle: u32, first: usize, vertices: Vec<Vertex>, width: [f32; 2], til
     let mut next = starts.clone();
     let mut segments = vec![0; starts[tiles.count()] as usize];
     for i in 0..count {
+        let behind = depths.step(0.5 * (vertices[i].at.z + vertices[i + 1].at.z)) << 32;
         for tile in touched(i) {
-            segments[next[tile] as usize] = i as u32;
+            segments[next[tile] as usize] = behind | i as u64;
             next[tile] += 1;
         }
     }
@@ -342,7 +377,7 @@ mod tests {
                     continue;
                 }
                 let tile = middle.y as usize / 32 * tiles.columns + middle.x as usize / 32;
-                assert!(chunk.segments(tile).contains(&(s as u32)));
+                assert!(chunk.segments(tile).iter().any(|&k| k & 0xffff_ffff == s as u64));
                 assert!((w[1].at - w[0].at).truncate().length() <= LONGEST + 1e-3);
             }
         }

@@ -1,6 +1,6 @@
 //! One call from a script: its arguments read strictly, its errors and warnings given a place.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -8,13 +8,14 @@ use std::time::Instant;
 use mlua::{Lua, MultiValue};
 
 use super::convert::{Reading, to_lua};
+use super::memo::{Kept, Origin};
 use super::registry::{Entry, Shape};
 use super::session::{Raised, Session, Timing};
 use super::source::CallText;
 use super::{Diagnostic, Frame, Severity, protect, strict, trace};
-use crate::geometry::Root;
+use crate::geometry::{Root, Strands};
 use crate::groom::GroomError;
-use crate::math::rng::Key;
+use crate::math::{Digest, rng::Key};
 use crate::params::{self, Function, Handle, Object, Params, Problem, Reader, Table, Value};
 use crate::task::{Task, Warned, Warning};
 
@@ -32,6 +33,7 @@ pub struct Call<'a> {
     table: Table,
     functions: Vec<mlua::Function>,
     stack: OnceCell<Vec<Frame>>,
+    origin: Cell<Option<Origin>>,
 }
 
 /// Runs a function of the registry for a script.
@@ -39,14 +41,23 @@ pub struct Call<'a> {
 /// # Errors
 /// A [`Raised`] with every problem of the arguments, or what the function raised.
 pub fn invoke(lua: &Lua, session: &Session, entry: &'static Entry, args: MultiValue) -> mlua::Result<mlua::Value> {
-    let mut call =
-        Call { session, lua, entry, this: None, table: Table::default(), functions: vec![], stack: OnceCell::new() };
+    let mut call = Call {
+        session,
+        lua,
+        entry,
+        this: None,
+        table: Table::default(),
+        functions: vec![],
+        stack: OnceCell::new(),
+        origin: Cell::new(None),
+    };
     call.take(args)?;
     let started = Instant::now();
     let value = (entry.call)(&call)?;
     let time = started.elapsed();
-    if time.as_micros() >= 500 {
-        let timing = Timing { what: entry.name.to_owned(), source: call.source().to_string(), time };
+    let origin = call.origin.get();
+    if time.as_micros() >= 500 || origin.is_some() {
+        let timing = Timing { what: entry.name.to_owned(), source: call.source().to_string(), time, origin };
         session.timings.borrow_mut().push(timing);
     }
     let value = to_lua(lua, &value)?;
@@ -187,7 +198,7 @@ impl Call<'_> {
 
     /// An error of the method, about the call.
     pub fn groom(&self, error: &GroomError) -> Raised {
-        self.problem(error.to_string(), None)
+        self.problem(error.to_string(), error.hint())
     }
 
     /// True when the function has a field of that name.
@@ -277,6 +288,50 @@ impl Call<'_> {
             self.warn("", warning);
         }
         warned.value
+    }
+
+    /// The value with this key, from the memo or computed; its warnings are given the place of this call.
+    ///
+    /// # Errors
+    /// What `compute` raised; errors are not kept.
+    pub fn memo<T: Kept>(&self, key: &Digest, compute: impl FnOnce() -> Result<Warned<T>>) -> Result<Arc<T>> {
+        self.memo_revised(key, |_| {}, compute)
+    }
+
+    /// The same for strands, whose `sources` are no part of their geometry: they are always those given.
+    ///
+    /// # Errors
+    /// What `compute` raised.
+    pub fn memo_strands(
+        &self,
+        key: &Digest,
+        sources: &[Arc<str>],
+        compute: impl FnOnce() -> Result<Warned<Strands>>,
+    ) -> Result<Arc<Strands>> {
+        let revise = |strands: &mut Arc<Strands>| {
+            if strands.sources != sources {
+                Arc::make_mut(strands).sources = sources.to_vec();
+            }
+        };
+        self.memo_revised(key, revise, compute)
+    }
+
+    fn memo_revised<T: Kept>(
+        &self,
+        key: &Digest,
+        revise: impl FnOnce(&mut Arc<T>),
+        compute: impl FnOnce() -> Result<Warned<T>>,
+    ) -> Result<Arc<T>> {
+        let (memo, key) = (&self.session.options.memo, key.finish());
+        if let Some((value, warnings)) = memo.revised(key, revise) {
+            self.origin.set(self.origin.get().or(Some(Origin::Hit)));
+            return Ok(self.warned(Warned { value, warnings }));
+        }
+        let Warned { value, warnings } = compute()?;
+        self.origin.set(Some(Origin::Computed));
+        let value = Arc::new(value);
+        memo.put(key, &value, &warnings);
+        Ok(self.warned(Warned { value, warnings }))
     }
 
     /// Calls one of the script's own functions.

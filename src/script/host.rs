@@ -13,7 +13,7 @@ use super::convert::Reading;
 use super::files::{Access, Files};
 use super::sandbox::{Deadline, Interruptible};
 use super::session::{Raised, Session, Timing};
-use super::{Diagnostic, Parameter, Sources, bind, protect, sandbox, trace};
+use super::{Diagnostic, Memo, Parameter, Sources, bind, protect, sandbox, trace};
 use crate::head::load::Unit;
 use crate::params::Value;
 use crate::scene::Scene;
@@ -36,10 +36,12 @@ pub struct Options {
     pub allow: Vec<PathBuf>,
     /// Longest time for the script and everything it calls.
     pub time_limit: Duration,
+    /// What earlier runs have computed; runs that share it find it again.
+    pub memo: Arc<Memo>,
 }
 
 impl Options {
-    /// A run of `script` with seed 0 and a minute's time.
+    /// A run of `script` with seed 0, a minute's time and a memo of its own.
     pub fn new(script: impl Into<PathBuf>) -> Self {
         Self {
             script: script.into(),
@@ -49,6 +51,7 @@ impl Options {
             head_unit: None,
             allow: vec![],
             time_limit: Duration::from_secs(60),
+            memo: Arc::default(),
         }
     }
 
@@ -91,7 +94,7 @@ pub struct Outcome {
     pub dependencies: BTreeSet<PathBuf>,
     /// The texts that diagnostics speak about.
     pub sources: Sources,
-    /// Calls that took half a millisecond or more, in order.
+    /// Calls that took half a millisecond or more, or whose value the memo keeps, in order.
     pub timings: Vec<Timing>,
 }
 

@@ -4,6 +4,7 @@
 //! an entry of the [`registry`]; bindings ([`bind`](self)) see plain data and the core, hardly any Lua. Whatever goes
 //! wrong becomes [`Diagnostic`]s with place, mark, trace and hint.
 
+pub mod api;
 mod bind;
 mod call;
 mod convert;
@@ -11,6 +12,7 @@ mod diagnostic;
 mod files;
 mod host;
 mod lexer;
+mod memo;
 mod module;
 mod object;
 mod protect;
@@ -29,6 +31,7 @@ pub use bind::Parameter;
 pub use diagnostic::{Diagnostic, Frame, Place, Severity};
 pub use files::{Access, AccessError, Disk, Files, Memory};
 pub use host::{Ending, Options, Outcome, run};
+pub use memo::{Kept, Memo, Origin};
 pub use session::Timing;
 pub use show::{show, show_all};
 pub use source::Sources;

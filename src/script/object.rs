@@ -52,7 +52,7 @@ fn method(lua: &Lua, entry: &'static registry::Entry) -> mlua::Result<mlua::Func
 }
 
 /// Signs between two values, and the methods they stand for.
-const OPERATORS: &[(MetaMethod, &str, &str)] =
+pub const OPERATORS: &[(MetaMethod, &str, &str)] =
     &[(MetaMethod::Add, "+", "union"), (MetaMethod::Sub, "-", "minus"), (MetaMethod::Mul, "*", "intersect")];
 
 /// `a + b`, where the first has a method for it.

@@ -10,6 +10,7 @@ use std::time::Duration;
 use mlua::Lua;
 
 use super::files::Access;
+use super::memo::Origin;
 use super::{Diagnostic, Options, Parameter, Sources};
 use crate::head::Head;
 use crate::task::Task;
@@ -54,6 +55,9 @@ pub struct Timing {
     pub source: String,
     /// How long it took.
     pub time: Duration,
+    /// Whether the memo had what is worth keeping of it; none where there is nothing worth keeping. A call with several
+    /// such parts was computed when any of them was.
+    pub origin: Option<Origin>,
 }
 
 /// The state of one run, shared by all bindings.

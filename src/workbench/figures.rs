@@ -1,5 +1,6 @@
 //! The figures of a scene.
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::geometry::Solid;
@@ -64,12 +65,9 @@ pub fn figures(scene: &Scene) -> Vec<PartFigures> {
             Body::Hair(hair) => {
                 let strands = &hair.strands;
                 let count = strands.count();
-                let (mut sum, mut longest) = (0.0_f64, 0.0_f32);
-                for i in 0..count {
-                    let length = strands.length(i);
-                    sum += f64::from(length);
-                    longest = longest.max(length);
-                }
+                let lengths: Vec<f32> = (0..count).into_par_iter().map(|i| strands.length(i)).collect();
+                let sum: f64 = lengths.iter().copied().map(f64::from).sum();
+                let longest = lengths.into_iter().fold(0.0, f32::max);
                 PartFigures {
                     part: part.name.clone(),
                     strands: count,

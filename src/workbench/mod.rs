@@ -5,10 +5,15 @@
 
 mod budget;
 mod figures;
+mod keep;
+mod new;
 mod output;
 mod run;
+pub mod terminal;
+pub mod watch;
 
 pub use budget::{Budget, keep_within};
 pub use figures::{PartFigures, figures};
+pub use new::{DEFINITIONS, NewError, api, new};
 pub use output::{Output, WriteError, Written, write_all};
-pub use run::{Report, RunError, RunOptions, Stage, run};
+pub use run::{Report, RunError, RunOptions, Stage, exports, preview, run};

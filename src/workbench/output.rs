@@ -2,14 +2,15 @@
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A file to be written.
 #[derive(Clone, Debug)]
 pub struct Output {
-    /// Name within the output folder.
+    /// Name within the output folder, with `/` when it lies in a folder there.
     pub name: String,
     /// Its content.
-    pub bytes: Vec<u8>,
+    pub bytes: Arc<Vec<u8>>,
 }
 
 /// A file that was written.
@@ -48,6 +49,9 @@ pub fn write_all(folder: &Path, outputs: &[Output]) -> Result<Vec<Written>, Writ
         if path.is_dir() {
             return Err(WriteError { path, error: io::Error::from(io::ErrorKind::IsADirectory) });
         }
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent).map_err(failed(parent))?;
+        }
         let mut file = beside(folder).map_err(failed(&path))?;
         file.write_all(&output.bytes).and_then(|()| file.flush()).map_err(failed(&path))?;
         ready.push((file, path, output.bytes.len()));
@@ -76,7 +80,7 @@ mod tests {
     use super::*;
 
     fn output(name: &str) -> Output {
-        Output { name: name.into(), bytes: b"new".to_vec() }
+        Output { name: name.into(), bytes: Arc::new(b"new".to_vec()) }
     }
 
     #[test]

@@ -5,12 +5,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::budget::Budget;
+use super::keep::{Shows, kept, scene_key};
 use super::output::{Output, WriteError, Written, write_all};
 use super::{PartFigures, figures};
 use crate::export::{ExportError, GlbOptions, StrandForm, glb, guides_glb};
 use crate::render::{PngError, RenderError, SheetOptions, Speed, png, sheet};
 use crate::scene::{Background, Scene, View};
-use crate::script::{self, Ending, Files, Outcome};
+use crate::script::{self, Ending, Files, Origin, Outcome};
 use crate::task::Task;
 use crate::tuft::TuftError;
 
@@ -48,6 +49,8 @@ pub struct Stage {
     pub what: &'static str,
     /// Wall-clock time.
     pub time: Duration,
+    /// Whether the memo had its result; none for a step whose result is not kept.
+    pub origin: Option<Origin>,
 }
 
 /// Why there are no files.
@@ -111,74 +114,151 @@ pub struct Report {
 
 /// Runs a script and writes its picture and files. Nothing is written when anything fails.
 pub fn run(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
-    let mut stages = vec![];
-    let outcome = timed(&mut stages, "script", || script::run(&options.script, files, task));
-    let mut report = Report { outcome, figures: vec![], stages, budget: None, written: Err(RunError::Script) };
-    report.written = match (report.outcome.ending, report.outcome.scene.as_mut()) {
-        (Ending::Cancelled, _) => Err(RunError::Cancelled),
-        (Ending::Done, Some(scene)) => {
-            if let Some(background) = options.background {
-                scene.look.background = background;
-            }
-            if let Some(views) = &options.views {
-                scene.views.clone_from(views);
-            }
-            if let Some(triangles) = options.triangles {
-                match timed(&mut report.stages, "triangles", || super::budget::keep_within(scene, triangles)) {
-                    Ok(budget) => report.budget = Some(budget),
-                    Err(error) => {
-                        report.written = Err(RunError::Budget(error));
-                        return report;
-                    }
-                }
-            }
-            report.figures = figures(scene);
-            if options.count_inside {
-                timed(&mut report.stages, "count", || super::figures::count_inside(scene, &mut report.figures));
-            }
-            outputs(options, scene, task, &mut report.stages)
-                .and_then(|outputs| Ok(timed(&mut report.stages, "write", || write_all(&options.out, &outputs))?))
-        }
-        (Ending::Done | Ending::Failed, _) => Err(RunError::Script),
-    };
+    let mut report = prepare(options, files, task);
+    finish(options, &mut report, task, |scene, stages| {
+        let mut outputs = pictures(options, scene, Speed::Balanced, task, stages)?;
+        outputs.extend(models(options, scene, task, stages)?);
+        Ok(outputs)
+    });
     report
 }
 
-/// Every file of a run, in memory.
-fn outputs(options: &RunOptions, scene: &Scene, task: &Task, stages: &mut Vec<Stage>) -> Result<Vec<Output>, RunError> {
+/// Runs a script and writes its picture only, coded quickly: the first half of [`run`], for somebody who waits.
+pub fn preview(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
+    let mut report = prepare(options, files, task);
+    finish(options, &mut report, task, |scene, stages| pictures(options, scene, Speed::Fast, task, stages));
+    report
+}
+
+/// Writes what [`preview`] has left out; the report's stages and files are those of this half.
+pub fn exports(options: &RunOptions, report: &mut Report, task: &Task) {
+    report.stages.clear();
+    finish(options, report, task, |scene, stages| models(options, scene, task, stages));
+}
+
+/// A scene with its figures, and nothing written yet.
+fn prepare(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
+    let mut stages = vec![];
+    let outcome = timed(&mut stages, "script", || script::run(&options.script, files, task));
+    let mut report = Report { outcome, figures: vec![], stages, budget: None, written: Ok(vec![]) };
+    let Some(scene) = report.outcome.scene.as_mut() else { return report };
+    if let Some(background) = options.background {
+        scene.look.background = background;
+    }
+    if let Some(views) = &options.views {
+        scene.views.clone_from(views);
+    }
+    if let Some(triangles) = options.triangles {
+        match timed(&mut report.stages, "triangles", || super::budget::keep_within(scene, triangles)) {
+            Ok(budget) => report.budget = Some(budget),
+            Err(error) => {
+                report.written = Err(RunError::Budget(error));
+                return report;
+            }
+        }
+    }
+    report.figures = figures(scene);
+    if options.count_inside {
+        timed(&mut report.stages, "count", || super::figures::count_inside(scene, &mut report.figures));
+    }
+    report
+}
+
+/// Makes outputs from the report's scene and puts them into place.
+fn finish(
+    options: &RunOptions,
+    report: &mut Report,
+    task: &Task,
+    make: impl FnOnce(&Scene, &mut Vec<Stage>) -> Result<Vec<Output>, RunError>,
+) {
+    if report.written.is_err() {
+        return;
+    }
+    let stages = &mut report.stages;
+    report.written = match (report.outcome.ending, &report.outcome.scene) {
+        (Ending::Cancelled, _) => Err(RunError::Cancelled),
+        (Ending::Done, Some(scene)) => make(scene, stages).and_then(|outputs| {
+            // Cancelled at the very end: what was made is not wanted any more.
+            task.check().map_err(|_| RunError::Cancelled)?;
+            Ok(timed(stages, "write", || write_all(&options.out, &outputs))?)
+        }),
+        (Ending::Done | Ending::Failed, _) => Err(RunError::Script),
+    };
+}
+
+/// The picture files of a run, in memory.
+fn pictures(
+    options: &RunOptions,
+    scene: &Scene,
+    speed: Speed,
+    task: &Task,
+    stages: &mut Vec<Stage>,
+) -> Result<Vec<Output>, RunError> {
     let name = &options.script.name();
     let mut outputs =
-        vec![Output { name: format!("{name}.png"), bytes: picture(options, scene, false, task, stages)? }];
+        vec![Output { name: format!("{name}.png"), bytes: picture(options, scene, false, speed, task, stages)? }];
     if options.debug {
-        outputs.push(Output { name: format!("{name}.debug.png"), bytes: picture(options, scene, true, task, stages)? });
+        let bytes = picture(options, scene, true, speed, task, stages)?;
+        outputs.push(Output { name: format!("{name}.debug.png"), bytes });
     }
+    Ok(outputs)
+}
+
+/// The files of a run for other programs, in memory.
+fn models(options: &RunOptions, scene: &Scene, task: &Task, stages: &mut Vec<Stage>) -> Result<Vec<Output>, RunError> {
+    let name = &options.script.name();
     let glb_options = GlbOptions { strands: options.strands, tolerance: options.tolerance, ..GlbOptions::default() };
-    let bytes = timed(stages, "glb", || glb(scene, &glb_options, task))?;
-    outputs.push(Output { name: format!("{name}.glb"), bytes });
+    let memo = &options.script.memo;
+    let key = |what| {
+        let mut key = scene_key(what, scene, Shows::Places, memo);
+        key.data(&glb_options);
+        key
+    };
+    let bytes = found(stages, "glb", || kept(memo, &key("glb 1"), || glb(scene, &glb_options, task)))?;
+    let mut outputs = vec![Output { name: format!("{name}.glb"), bytes }];
     if options.guides {
-        let bytes = timed(stages, "guides", || guides_glb(scene, &glb_options, task))?;
+        let make = || guides_glb(scene, &glb_options, task);
+        let bytes = found(stages, "guides", || kept(memo, &key("guides glb 1"), make))?;
         outputs.push(Output { name: format!("{name}.guides.glb"), bytes });
     }
-    // Cancelled at the very end: what was made is not wanted any more.
-    if task.is_cancelled() { Err(RunError::Cancelled) } else { Ok(outputs) }
+    Ok(outputs)
 }
 
 fn picture(
     options: &RunOptions,
     scene: &Scene,
     debug: bool,
+    speed: Speed,
     task: &Task,
     stages: &mut Vec<Stage>,
-) -> Result<Vec<u8>, RunError> {
+) -> Result<Arc<Vec<u8>>, RunError> {
     let mut drawn = scene.clone();
     drawn.look.debug = debug;
-    let what = if debug { "debug picture" } else { "picture" };
-    timed(stages, what, || Ok(png::encode(&sheet(&drawn, &options.sheet, task)?, Speed::Balanced)?))
+    let (what, shows) = if debug { ("debug picture", Shows::Domains) } else { ("picture", Shows::Hair) };
+    let memo = &options.script.memo;
+    found(stages, what, || {
+        let mut key = scene_key("picture 1", &drawn, shows, memo);
+        key.data(&options.sheet).data(&speed);
+        kept(memo, &key, || Ok(png::encode(&sheet(&drawn, &options.sheet, task)?, speed)?))
+    })
+}
+
+/// Times a step that may be found in the memo.
+fn found<T, E>(
+    stages: &mut Vec<Stage>,
+    what: &'static str,
+    work: impl FnOnce() -> Result<(T, Origin), E>,
+) -> Result<T, E> {
+    let result = timed(stages, what, work)?;
+    if let Some(stage) = stages.last_mut() {
+        stage.origin = Some(result.1);
+    }
+    Ok(result.0)
 }
 
 fn timed<R>(stages: &mut Vec<Stage>, what: &'static str, work: impl FnOnce() -> R) -> R {
     let started = Instant::now();
     let result = work();
-    stages.push(Stage { what, time: started.elapsed() });
+    stages.push(Stage { what, time: started.elapsed(), origin: None });
     result
 }

@@ -48,7 +48,7 @@ crate::params! {
         /// What strands become.
         strands: StrandForm = StrandForm::Ribbons;
         /// No point of a strand is farther than this from what is drawn of it; 0 keeps every bend.
-        tolerance: f32 = 0.05, unit("cm"), range(0.0, 10.0);
+        tolerance: f32 = 0.1, unit("cm"), range(0.0, 10.0);
         /// A larger file is refused; the format itself ends at 4294967295.
         max_bytes: u64 = u64::from(u32::MAX), unit("bytes"), range(0.0, 4294967295.0);
     }
@@ -56,7 +56,7 @@ crate::params! {
 
 impl Default for GlbOptions {
     fn default() -> Self {
-        Self { strands: StrandForm::Ribbons, tolerance: 0.05, max_bytes: u64::from(u32::MAX) }
+        Self { strands: StrandForm::Ribbons, tolerance: 0.1, max_bytes: u64::from(u32::MAX) }
     }
 }
 

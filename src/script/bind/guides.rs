@@ -8,7 +8,9 @@ use super::head::give;
 use super::overlay;
 use super::region::Area;
 use super::strands::Lock;
+use crate::geometry::Root;
 use crate::groom::{Grow, GrowOptions, Guides, grow};
+use crate::math::Digest;
 use crate::params::{Object, Value};
 use crate::scene::HairMaterial;
 
@@ -81,7 +83,11 @@ fn grow_guides(call: &Call) -> Result<Value> {
         solid: Some(&this.area.head.solid),
         margin: options.margin,
     };
-    let strands = Arc::new(call.warned(grow(&input, call.task()).map_err(|e| call.groom(&e))?));
+    let mut key = Digest::new("grow 1");
+    key.key(this.area.head.key()).data(&this.guides.options).packed(&this.guides.roots, Root::bytes);
+    key.data(&options.global).data(&locals).data(&local_of).floats(&[options.margin]);
+    let source = Arc::clone(&this.guides.source);
+    let strands = call.memo_strands(&key, &[source], || grow(&input, call.task()).map_err(|e| call.groom(&e)))?;
     let mut overlay = overlay::area(&this.area);
     let offset = options.global.as_ref().map_or(0, |q| q.stages().len());
     if let Some(queue) = &options.global {

@@ -1,5 +1,6 @@
 //! Heads: `coif.head` and its methods.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -8,13 +9,16 @@ use std::sync::{Arc, OnceLock};
 use glam::Vec3;
 
 use super::super::call::{Call, Result};
+use super::super::files::AccessError;
 use super::super::registry::{Entry, Getter, Noun};
 use super::region::Area;
 use crate::geometry::OrientedBox;
 use crate::head::load::{self, Axis, FileBytes, LoadError, LoadOptions, Unit};
 use crate::head::mannequin::{self, Style};
 use crate::head::{Head, HeadError, Landmarks, Parting, Region};
+use crate::math::Digest;
 use crate::params::{Angle, Handle, Object, Table, Value};
+use crate::task::Warned;
 
 crate::params! {
     /// The head that hair grows on: the built-in mannequin, or a mesh from a file. `--head FILE` on the command line
@@ -33,7 +37,7 @@ crate::params! {
         /// Only these groups, objects or materials of the file; everything when left out.
         groups: Vec<String> = vec![];
         /// Landmarks by name, in the file's own axes and unit, instead of those found from the shape.
-        landmarks: Value = Value::Table(Table::default());
+        landmarks: Value = Value::Table(Table::default()), takes("table<string, Point>");
     }
 }
 
@@ -41,7 +45,7 @@ crate::params! {
     /// A landmark plus an offset in cm (to the head's left, up, to the front) that grows with the head.
     pub struct AtFields("Head:at") {
         /// `vertex`, `forehead`, `left_temple`, `right_temple`, `left_ear`, `right_ear`, `occiput`, `nape`, `chin`.
-        landmark: String;
+        landmark: String, choices(&Landmarks::NAMES);
         /// From there, for an adult's head.
         offset: Vec3 = Vec3::ZERO, unit("cm");
     }
@@ -51,7 +55,7 @@ crate::params! {
     /// A half of the space about the head, or all of it, as a box.
     pub struct BoxFields("Head:box") {
         /// `all`, `behind`, `front`, `left`, `right`, `above`, `below` the ears.
-        name: String;
+        name: String, choices(&Head::BOXES);
     }
 }
 
@@ -189,7 +193,7 @@ fn head(call: &Call) -> Result<Value> {
     let head = match (&call.session.options.head, &fields.file) {
         (Some(path), _) => {
             let options = LoadOptions { unit: call.session.options.head_unit, ..LoadOptions::default() };
-            Arc::new(from_file(call, path, "", &options, &BTreeMap::new())?)
+            from_file(call, path, "", &options, &BTreeMap::new())?
         }
         (None, Some(file)) => {
             let options = LoadOptions {
@@ -199,7 +203,7 @@ fn head(call: &Call) -> Result<Value> {
                 groups: fields.groups.clone(),
             };
             let path = call.session.options.folder().join(file);
-            Arc::new(from_file(call, &path, "file", &options, &landmarks(call, &fields)?)?)
+            from_file(call, &path, "file", &options, &landmarks(call, &fields)?)?
         }
         (None, None) => {
             let lone = [
@@ -245,12 +249,52 @@ fn from_file(
     path: &str,
     options: &LoadOptions,
     landmarks: &BTreeMap<String, Vec3>,
-) -> Result<Head> {
+) -> Result<Arc<Head>> {
     let bytes = call.session.access.read(file).map_err(|e| call.problem_at(path, e.to_string(), e.hint()))?;
-    let name = file.to_string_lossy();
     let folder = file.parent().map(Path::to_path_buf).unwrap_or_default();
-    let siblings =
-        |name: &str| call.session.access.read(&folder.join(name)).map_err(|e| io::Error::other(e.to_string()));
+    let read = |name: &str| call.session.access.read(&folder.join(name));
+    let mut key = Digest::new("head file 1");
+    key.data(&file.file_name()).data(options).data(landmarks).bytes(&bytes);
+    // Which files it refers to is known from its content; what they hold counts too.
+    let mut names = key.clone();
+    names.bytes(b"names");
+    let memo = &call.session.options.memo;
+    let known = memo.get::<Vec<String>>(names.finish()).map(|found| found.0);
+    let add = |key: &mut Digest, name: &str, bytes: Option<&[u8]>| {
+        key.bytes(name.as_bytes()).flags(&[bytes.is_some()]).bytes(bytes.unwrap_or_default());
+    };
+    if let Some(known) = &known {
+        known.iter().for_each(|name| add(&mut key, name, read(name).ok().as_deref()));
+        return call.memo(&key, || loaded(call, (file, &bytes), path, options, landmarks, &read));
+    }
+    // The first time the names are found on the way.
+    let asked = RefCell::new(BTreeMap::new());
+    let noting = |name: &str| {
+        let bytes = read(name);
+        asked.borrow_mut().insert(name.to_owned(), bytes.as_ref().ok().cloned());
+        bytes
+    };
+    let head = loaded(call, (file, &bytes), path, options, landmarks, &noting)?;
+    let asked = asked.into_inner();
+    asked.iter().for_each(|(name, bytes)| add(&mut key, name, bytes.as_deref()));
+    memo.put(names.finish(), &Arc::new(asked.into_keys().collect::<Vec<String>>()), &[]);
+    call.memo(&key, || Ok(head))
+}
+
+/// What the mesh file refers to, by its name beside it.
+type Beside<'a> = dyn Fn(&str) -> std::result::Result<Vec<u8>, AccessError> + 'a;
+
+/// A head from the bytes of its file.
+fn loaded(
+    call: &Call,
+    (file, bytes): (&Path, &[u8]),
+    path: &str,
+    options: &LoadOptions,
+    landmarks: &BTreeMap<String, Vec3>,
+    beside: &Beside,
+) -> Result<Warned<Head>> {
+    let name = file.to_string_lossy();
+    let siblings = |name: &str| beside(name).map_err(|e| io::Error::other(e.to_string()));
     let field = |e: &LoadError| match e {
         LoadError::UnknownGroup { .. } => "groups",
         LoadError::Axes { .. } => "forward",
@@ -262,13 +306,14 @@ fn from_file(
         let message = if message.contains(&*name) { message } else { format!("`{name}`: {message}") };
         call.problem_at(field(&e), message, e.hint())
     };
-    let loaded = load::load(&FileBytes { name: &name, bytes: &bytes }, options, &siblings).map_err(failed)?;
-    let loaded = call.warned(loaded);
-    load::check_head_size(loaded.mesh.bounds(), loaded.unit).map_err(failed)?;
-    let landmarks = landmarks.iter().map(|(name, &p)| (name.clone(), loaded.from_file * p)).collect();
+    let Warned { value: mesh, mut warnings } =
+        load::load(&FileBytes { name: &name, bytes }, options, &siblings).map_err(failed)?;
+    load::check_head_size(mesh.mesh.bounds(), mesh.unit).map_err(failed)?;
+    let landmarks = landmarks.iter().map(|(name, &p)| (name.clone(), mesh.from_file * p)).collect();
     let stem = file.file_stem().map_or_else(|| "head".into(), |s| s.to_string_lossy().into_owned());
-    let head = Head::from_mesh(loaded.mesh, &stem, &landmarks).map_err(|e| head_error(call, path, &e))?;
-    Ok(call.warned(head))
+    let head = Head::from_mesh(mesh.mesh, &stem, &landmarks).map_err(|e| head_error(call, path, &e))?;
+    warnings.extend(head.warnings);
+    Ok(Warned { value: head.value, warnings })
 }
 
 /// The `landmarks` field: a table of points by name.

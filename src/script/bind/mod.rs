@@ -21,7 +21,7 @@ use mlua::Lua;
 
 use super::call::invoke;
 use super::convert::to_lua;
-use super::registry::{Registry, registry as language};
+use super::registry::{Constant, Registry, registry as language};
 use super::session::session;
 use super::strict;
 use crate::params::{Table, Value};
@@ -53,6 +53,13 @@ pub fn registry() -> Registry {
         constants: constants::constants(),
     }
 }
+
+/// The run's seed; what it is without `--seed`.
+pub const SEED: Constant = Constant {
+    name: "coif.seed",
+    doc: "The seed of this run, from `--seed`; 0 without it.",
+    value: || Value::Number(0.0),
+};
 
 /// A list as a value.
 fn list(items: impl IntoIterator<Item = Value>) -> Value {
@@ -94,7 +101,7 @@ pub fn install(lua: &Lua) -> mlua::Result<()> {
         put(constant.name, to_lua(lua, &(constant.value)())?)?;
     }
     let seed = session(lua)?.options.seed;
-    put("coif.seed", mlua::Value::Number(seed as f64))?;
+    put(SEED.name, mlua::Value::Number(seed as f64))?;
     for (path, table) in &folders {
         strict::seal(lua, table, &format!("`{path}`"))?;
     }

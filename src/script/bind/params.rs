@@ -3,7 +3,7 @@
 use super::super::call::{Call, Result};
 use super::super::registry::{Entry, Shape};
 use crate::math::Colour;
-use crate::params::{Problem, Reader, Table, Value};
+use crate::params::{Field, Kind, Params, Problem, Reader, Table, Value};
 
 /// A parameter that a script declares.
 #[derive(Clone, Debug)]
@@ -52,7 +52,7 @@ crate::params! {
     /// One parameter: `length = { 45, min = 10, max = 80, unit = "cm", doc = "longest strand" }`, or just `length = 45`.
     pub struct Declaration("coif.params") {
         /// What it is unless set from outside: a number, true or false, a text, `"#rrggbb"`, a point.
-        default: Vec<Value>, positional();
+        default: Vec<Value>, positional(), takes("number|boolean|string|Point");
         /// Least value of a number.
         min: Option<f32>;
         /// Greatest value of a number.
@@ -74,13 +74,20 @@ pub fn functions() -> Vec<Entry> {
         name: "coif.params",
         doc: "Declares the style's parameters and gives their values: the defaults, or what `--set name=value` says. \
               Each is a default, or a table of a default with `min`, `max`, `integer`, `unit`, `doc`, `choices`.",
-        fields: Vec::new,
+        fields: || vec![any_parameter()],
         shape: Shape::Table,
         returns: "table",
         sealed: Some("the table of parameters"),
         call: declare,
     };
     vec![declare]
+}
+
+/// What stands behind the name of a parameter.
+fn any_parameter() -> Field {
+    let kinds = vec![Kind::Struct(Declaration::NAME), Kind::Number, Kind::Bool, Kind::Text, Kind::Point];
+    let doc = "A parameter, by the name that it shall have.";
+    Field { kind: Kind::OneOf(kinds), ..Field::new::<Option<Declaration>>("parameter", doc).any_name() }
 }
 
 fn declare(call: &Call) -> Result<Value> {
@@ -112,7 +119,7 @@ fn parameter(name: &str, value: &Value) -> std::result::Result<Parameter, Vec<Pr
         _ => &whole,
     };
     let mut reader = Reader::default();
-    let declaration: Option<Declaration> = reader.inside(name, |r| crate::params::Params::read(table, r));
+    let declaration: Option<Declaration> = reader.inside(name, |r| Params::read(table, r));
     let problems = reader.problems();
     let problem = |message: String, hint: Option<String>| vec![Problem { path: name.to_owned(), message, hint }];
     let Some(d) = declaration.filter(|_| problems.is_empty()) else { return Err(problems) };

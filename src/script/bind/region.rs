@@ -8,8 +8,10 @@ use super::guides::Seedlings;
 use super::head::give;
 use crate::geometry::Root;
 use crate::groom::{GuideOptions, Guides};
-use crate::head::{Head, Parting, Region, roots, roots_by_density};
+use crate::head::{Head, Parting, Region, RootsError, roots, roots_by_density};
+use crate::math::Digest;
 use crate::params::{Function, Object, Value};
+use crate::task::Warned;
 
 /// A region together with its head and its partings.
 #[derive(Clone, Debug)]
@@ -30,6 +32,31 @@ impl Area {
     /// Without partings.
     pub fn new(head: Arc<Head>, region: Region) -> Self {
         Self { head, region, partings: vec![] }
+    }
+
+    /// So many roots on it (with the name of the field that says so), or by their density.
+    ///
+    /// # Errors
+    /// Counts that make no sense, an empty region, cancelling.
+    pub fn roots(&self, call: &Call, count: (&str, usize), density: Option<f32>, seed: u64) -> Result<Arc<Vec<Root>>> {
+        let (field, count) = if density.is_some() { ("density", 0) } else { count };
+        let (head, region, task) = (&self.head, &self.region, call.task());
+        let mut key = Digest::new("roots 1");
+        match density {
+            Some(density) => key.number(0).floats(&[density]),
+            None => key.number(1).number(count as u64),
+        };
+        region.digest(key.key(head.key()).number(seed));
+        call.memo(&key, || {
+            let found = match density {
+                Some(density) => roots_by_density(head, region, density, seed, task),
+                None => roots(head, region, count, seed, task),
+            };
+            found.map(Warned::clean).map_err(|e| match e {
+                RootsError::Empty => call.problem(e.to_string(), e.hint()),
+                e => call.problem_at(field, e.to_string(), e.hint()),
+            })
+        })
     }
 
     fn with(&self, region: Region) -> Self {
@@ -65,7 +92,7 @@ crate::params! {
     /// The part of the region for whose places a function returns true.
     pub struct WhereFields("Region:where") {
         /// Takes a place on the head (a vector), returns true or false.
-        test: Function;
+        test: Function, takes("(place: vector): boolean");
     }
 }
 
@@ -73,7 +100,7 @@ crate::params! {
     /// The same region with hair thinned out.
     pub struct DensityFields("Region:density") {
         /// A number from 0 to 1, or a function that takes a place on the head (a vector) and returns one.
-        density: Value;
+        density: Value, takes("number|fun(place: vector): number");
     }
 }
 
@@ -81,7 +108,7 @@ crate::params! {
     /// The same region with a parting through it: strands on its two sides never blend.
     pub struct PartFields("Region:parting") {
         /// A parting, or a list of points to lay one through.
-        line: Value;
+        line: Value, takes("Parting|Point[]");
     }
 }
 
@@ -129,13 +156,9 @@ fn guides(call: &Call) -> Result<Value> {
     let area = call.this::<Area>()?;
     let (mut options, density) = call.read_both::<GuideOptions, GuideDensity>()?;
     options.seed = call.seed(options.seed);
-    let roots = match density.density {
-        Some(density) => roots_by_density(&area.head, &area.region, density, options.seed, call.task()),
-        None => roots(&area.head, &area.region, options.count, options.seed, call.task()),
-    };
-    let roots = roots.map_err(|e| call.problem(e.to_string(), e.hint()))?;
-    options.check(&roots).map_err(|e| call.problem(e.to_string(), None))?;
-    let guides = Guides { roots, options, source: call.source() };
+    let roots = area.roots(call, ("count", options.count), density.density, options.seed)?;
+    options.check(&roots).map_err(|e| call.groom(&e))?;
+    let guides = Guides { roots: Vec::clone(&roots), options, source: call.source() };
     Ok(give(Seedlings { guides, area: Area::clone(&area) }))
 }
 

@@ -7,9 +7,9 @@ use super::super::registry::{Entry, Getter, Noun};
 use super::head::give;
 use super::overlay;
 use super::region::Area;
-use crate::geometry::Strands;
+use crate::geometry::{Root, Strands};
 use crate::groom::{Deform, DeformOptions, Fill, FillOptions, NaturalQueue, count_inside, deform, fill};
-use crate::head::{roots, roots_by_density};
+use crate::math::Digest;
 use crate::params::{Object, Table, Value};
 use crate::scene::{HairMaterial, Overlay};
 
@@ -117,7 +117,11 @@ fn natural(call: &Call) -> Result<Value> {
         margin: options.margin,
         seed: call.seed(options.seed),
     };
-    let strands = Arc::new(call.warned(deform(&input, call.task()).map_err(|e| call.groom(&e))?));
+    let mut key = Digest::new("natural 1");
+    key.key(this.area.head.key()).key(call.session.options.memo.content(&this.strands));
+    key.data(&queue.domains()).flags(&which).floats(&[options.margin]).number(input.seed);
+    let sources = &this.strands.sources;
+    let strands = call.memo_strands(&key, sources, || deform(&input, call.task()).map_err(|e| call.groom(&e)))?;
     let mut overlay = Overlay::clone(&this.overlay);
     overlay.extend(&overlay::naturals(queue.domains()));
     // Deformed guides are guides still; deformed members keep theirs.
@@ -138,12 +142,8 @@ fn fill_strands(call: &Call) -> Result<Value> {
         Some(area) => area,
         None => &this.area,
     };
-    let (head, region) = (&area.head, &area.region);
-    let roots = match extras.density {
-        Some(density) => roots_by_density(head, region, density, options.seed, call.task()),
-        None => roots(head, region, options.strands, options.seed, call.task()),
-    };
-    let roots = roots.map_err(|e| call.problem(e.to_string(), e.hint()))?;
+    let head = &area.head;
+    let roots = area.roots(call, ("strands", options.strands), extras.density, options.seed)?;
     let partings = &this.area.partings;
     let separated = |a, b| partings.iter().any(|p| p.separates(a, b));
     let source = call.source();
@@ -155,10 +155,14 @@ fn fill_strands(call: &Call) -> Result<Value> {
         solid: Some(&head.solid),
         source: &source,
     };
-    let strands = call.warned(fill(&input, call.task()).map_err(|e| call.groom(&e))?);
+    let mut key = Digest::new("fill 1");
+    key.key(head.key()).key(call.session.options.memo.content(&this.strands));
+    key.data(&options).packed(&roots, Root::bytes).data(partings);
+    let made = || fill(&input, call.task()).map_err(|e| call.groom(&e));
+    let strands = call.memo_strands(&key, &[Arc::clone(&source)], made)?;
     let material = extras.material.map_or_else(|| this.material.clone(), |look| look.0);
     Ok(give(Lock {
-        strands: Arc::new(strands),
+        strands,
         guides: Arc::clone(&this.strands),
         area: this.area.clone(),
         material,

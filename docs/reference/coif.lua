@@ -1,0 +1,651 @@
+---@meta
+-- Made by `coif api`: what a hairstyle script can use, for LuaLS and EmmyLua. Do not edit.
+
+---A direction or a place, three numbers: what Luau calls a vector.
+---@class vector
+---@field x number # To the head's left.
+---@field y number # Up.
+---@field z number # To the front.
+---@operator add(vector): vector
+---@operator sub(vector): vector
+---@operator mul(vector): vector
+---@operator mul(number): vector
+---@operator div(vector): vector
+---@operator div(number): vector
+---@operator idiv(vector): vector
+---@operator idiv(number): vector
+---@operator unm: vector
+
+---A place: a vector or three numbers, in cm.
+---@alias coif.Point vector|{ [1]: number, [2]: number, [3]: number }
+
+---Where to: a vector or three numbers, of any length but zero.
+---@alias coif.Direction vector|{ [1]: number, [2]: number, [3]: number }
+
+---A colour: `"#rrggbb"`, or red, green and blue from 0 to 1.
+---@alias coif.Colour string|vector|{ [1]: number, [2]: number, [3]: number }
+
+---Luau's vectors.
+---@class vectorlib
+---@field zero vector # `{ 0, 0, 0 }`
+---@field one vector # `{ 1, 1, 1 }`
+vector = {}
+
+---A vector of three numbers.
+---@param x number
+---@param y number
+---@param z? number
+---@return vector
+function vector.create(x, y, z) end
+
+---The length.
+---@param v vector
+---@return number
+function vector.magnitude(v) end
+
+---The same direction with length 1.
+---@param v vector
+---@return vector
+function vector.normalize(v) end
+
+---The dot product.
+---@param a vector
+---@param b vector
+---@return number
+function vector.dot(a, b) end
+
+---The cross product.
+---@param a vector
+---@param b vector
+---@return vector
+function vector.cross(a, b) end
+
+---The angle between two vectors in radians; with an axis it has a sign.
+---@param a vector
+---@param b vector
+---@param axis? vector
+---@return number
+function vector.angle(a, b, axis) end
+
+---From `a` at 0 to `b` at 1.
+---@param a vector
+---@param b vector
+---@param t number
+---@return vector
+function vector.lerp(a, b, t) end
+
+---Each component rounded down.
+---@param v vector
+---@return vector
+function vector.floor(v) end
+
+---Each component rounded up.
+---@param v vector
+---@return vector
+function vector.ceil(v) end
+
+---Each component without its sign.
+---@param v vector
+---@return vector
+function vector.abs(v) end
+
+---Each component's sign: -1, 0 or 1.
+---@param v vector
+---@return vector
+function vector.sign(v) end
+
+---Each component kept between those of two vectors.
+---@param v vector
+---@param low vector
+---@param high vector
+---@return vector
+function vector.clamp(v, low, high) end
+
+---The least of each component.
+---@param v vector
+---@param ... vector
+---@return vector
+function vector.min(v, ...) end
+
+---The greatest of each component.
+---@param v vector
+---@param ... vector
+---@return vector
+function vector.max(v, ...) end
+
+---The type's name; `"vector"` for vectors, `"userdata"` for what Coif made.
+---@param value any
+---@return string
+function typeof(value) end
+
+---`n` kept between two numbers.
+---@param n number
+---@param low number
+---@param high number
+---@return number
+function math.clamp(n, low, high) end
+
+---To the nearest whole number.
+---@param n number
+---@return number
+function math.round(n) end
+
+---The sign: -1, 0 or 1.
+---@param n number
+---@return number
+function math.sign(n) end
+
+---From `a` at 0 to `b` at 1.
+---@param a number
+---@param b number
+---@param t number
+---@return number
+function math.lerp(a, b, t) end
+
+---From the interval `from_low` to `from_high` to another one.
+---@param n number
+---@param from_low number
+---@param from_high number
+---@param to_low number
+---@param to_high number
+---@return number
+function math.map(n, from_low, from_high, to_low, to_high) end
+
+---Smooth noise between -1 and 1 that depends on nothing but its arguments.
+---@param x number
+---@param y? number
+---@param z? number
+---@return number
+function math.noise(x, y, z) end
+
+---Empties a table.
+---@param t table
+function table.clear(t) end
+
+---A copy of a table, one level deep.
+---@generic T: table
+---@param t T
+---@return T
+function table.clone(t) end
+
+---A list of `count` values.
+---@generic T
+---@param count number
+---@param value? T
+---@return T[]
+function table.create(count, value) end
+
+---Where a value stands in a list; nothing if it does not.
+---@generic T
+---@param t T[]
+---@param value T
+---@param from? number
+---@return number?
+function table.find(t, value, from) end
+
+---Makes a table read-only, and gives it.
+---@generic T: table
+---@param t T
+---@return T
+function table.freeze(t) end
+
+---Whether a table is read-only.
+---@param t table
+---@return boolean
+function table.isfrozen(t) end
+
+---The pieces of a text between separators.
+---@param text string
+---@param separator? string
+---@return string[]
+function string.split(text, separator) end
+
+---Hairstyles that are written.
+---@class coif
+---@field up vector # Towards the crown, +Y.
+---@field down vector # Towards the feet, -Y.
+---@field front vector # Where the face looks, +Z.
+---@field back vector # Away from the face, -Z.
+---@field left vector # The head's own left, +X.
+---@field right vector # The head's own right, -X.
+---@field seed number # The seed of this run, from `--seed`; 0 without it.
+coif = {}
+
+---@class coif.domain
+coif.domain = {}
+
+---@class coif.material
+coif.material = {}
+
+---A parameter, by the name that it shall have.
+---@class (exact) coif.params.parameter
+---@field [integer] number|boolean|string|coif.Point # What it is unless set from outside: a number, true or false, a text, `"#rrggbb"`, a point.
+---@field min? number # Least value of a number.
+---@field max? number # Greatest value of a number.
+---@field integer? boolean # True when a number must be whole. [default false]
+---@field unit? string # Unit of a number, for people.
+---@field doc? string # What it means, in one line.
+---@field choices? string[] # What a text may be.
+
+---What `coif.params` takes.
+---@class (exact) coif.params.fields
+---@field [string] coif.params.parameter|number|boolean|string|coif.Point # A parameter, by the name that it shall have.
+
+---Declares the style's parameters and gives their values: the defaults, or what `--set name=value` says. Each is a
+---default, or a table of a default with `min`, `max`, `integer`, `unit`, `doc`, `choices`.
+---@param fields? coif.params.fields
+---@return table<string, any>
+function coif.params(fields) end
+
+---What `coif.head` takes.
+---@class (exact) coif.head.fields
+---@field style? "adult"|"cartoon" # Which mannequin. [default "adult"]
+---@field file? string # A mesh instead of the mannequin: OBJ, glTF or GLB, beside the script or below its folder.
+---@field unit? "mm"|"cm"|"dm"|"m"|"in"|"ft" # What one unit of the file is; metres for glTF, centimetres for OBJ when left out.
+---@field up? "x"|"y"|"z"|"-x"|"-y"|"-z" # The axis of the file that points up; "y" when left out.
+---@field forward? "x"|"y"|"z"|"-x"|"-y"|"-z" # The axis of the file that the face looks along; "z", or "-y" when z is up.
+---@field groups? string[] # Only these groups, objects or materials of the file; everything when left out.
+---@field landmarks? table<string, coif.Point> # Landmarks by name, in the file's own axes and unit, instead of those found from the shape.
+
+---The head that hair grows on: the built-in mannequin, or a mesh from a file. `--head FILE` on the command line
+---takes the place of either.
+---@param fields? coif.head.fields
+---@return coif.Head
+function coif.head(fields) end
+
+---What `coif.box` takes.
+---@class (exact) coif.box.fields
+---@field centre? coif.Point # Its middle; goes with `size`. [cm]
+---@field size? coif.Point # Its edge lengths, each more than 0; goes with `centre`. [cm]
+---@field min? coif.Point # One corner; goes with `max`. [cm]
+---@field max? coif.Point # The opposite corner; goes with `min`. [cm]
+---@field rotation? coif.Point # Turns about its middle, about the x axis, then y, then z. [degrees; default { 0, 0, 0 }]
+
+---A box: by its middle and edge lengths, or by two opposite corners.
+---@param fields? coif.box.fields
+---@return coif.Box
+function coif.box(fields) end
+
+---What `coif.domain.directional` takes.
+---@class (exact) coif.domain.directional.fields
+---@field box coif.Box|coif.box.fields # Where it acts.
+---@field direction coif.Direction # Where to it draws.
+---@field strength? number # Weight among the domains that act together. [0 to 1000; default 1]
+---@field priority? number # Order within the queue: higher acts first, equal priorities act together. [whole; default 0]
+---@field noise? number # Standard deviation of the gaussian noise on the direction, step by step. [0 to 10; default 0]
+---@field name? string # What messages and the debug view call it.
+
+---A directional domain: inside its box hair is drawn in one direction. A strand that has been inside and leaves
+---the box is never again acted upon; one that never comes in keeps the domain waiting.
+---@param fields coif.domain.directional.fields
+---@return coif.Domain
+function coif.domain.directional(fields) end
+
+---What `coif.domain.gather` takes.
+---@class (exact) coif.domain.gather.fields
+---@field core coif.Point # The point it draws to. [cm]
+---@field core_radius? number # How near to the core counts as there. [cm; 0 to 1000; default 1]
+---@field strength? number # Weight among the domains that act together. [0 to 1000; default 1]
+---@field scatter? number # How much of the old tangent stays when it lets go; needs `direction`. [-100 to 100; default 0]
+---@field direction? coif.Direction # Where to hair leaves the core; without it the tangent stays as it is.
+---@field priority? number # Order within the queue: higher acts first, equal priorities act together. [whole; default 0]
+---@field noise? number # Standard deviation of the gaussian noise on the direction, step by step. [0 to 10; default 0]
+---@field name? string # What messages and the debug view call it.
+
+---A gather domain: hair is drawn to a core, and let go once it is there, or once it is farther from where it was
+---caught than the core is. The tangent t then becomes `direction + scatter * t`: a negative scatter flips the
+---spread of a bundle through its knot.
+---@param fields coif.domain.gather.fields
+---@return coif.Domain
+function coif.domain.gather(fields) end
+
+---What `coif.domain.wave` takes.
+---@class (exact) coif.domain.wave.fields
+---@field box coif.Box|coif.box.fields # Where it acts.
+---@field period number # Length of one wave. [cm; 0.05 to 1000]
+---@field radius? number # Greatest distance from the axis. [cm; 0 to 100; default 0.4]
+---@field radius_tip? number # Radius at the end of the part inside the box; the same as `radius` when left out. [cm; 0 to 100]
+---@field smooth? number # Part of the length over which the wave rises at its start. [0.001 to 0.5; default 0.25]
+---@field smooth_end? number # Part of the length over which it falls at its end, 0 for not at all; as `smooth` when left out. [0 to 0.5]
+---@field phase? number # Where in the wave it starts. [degrees; -360 to 360; default 0]
+---@field phase_variation? number # How much the phase differs from guide to guide: 0 not at all, 1 by up to a whole turn. [0 to 1; default 0]
+---@field radius_variation? number # How much the radius differs from guide to guide, as a part of it. [0 to 1; default 0]
+---@field tilt? number # Turns the plane of the wave about the strand: 0 waves towards the head and away from it, 90 along the head. [degrees; -360 to 360; default 0]
+---@field priority? number # Order within the queue: higher acts first. [whole; default 0]
+---@field noise? number # Standard deviation of gaussian noise on the displacement, as a part of the radius. [0 to 10; default 0]
+---@field name? string # What messages and the debug view call it.
+
+---A natural domain that waves hair in a plane.
+---@param fields coif.domain.wave.fields
+---@return coif.Domain
+function coif.domain.wave(fields) end
+
+---What `coif.domain.curl` takes.
+---@class (exact) coif.domain.curl.fields
+---@field box coif.Box|coif.box.fields # Where it acts.
+---@field period number # Length along the strand of one turn. [cm; 0.05 to 1000]
+---@field radius? number # Greatest distance from the axis. [cm; 0 to 100; default 0.5]
+---@field radius_tip? number # Radius at the end of the part inside the box; the same as `radius` when left out. [cm; 0 to 100]
+---@field flatness? number # The helix's other radius over the first: 1 is round, 0 a plane wave. [0 to 10; default 1]
+---@field turn? "right"|"left"|"mirrored"|"random" # Which way it turns. [default "right"]
+---@field smooth? number # Part of the length over which the curl rises at its start. [0.001 to 0.5; default 0.25]
+---@field smooth_end? number # Part of the length over which it falls at its end, 0 for not at all; as `smooth` when left out. [0 to 0.5]
+---@field phase? number # Where in the turn it starts. [degrees; -360 to 360; default 0]
+---@field phase_variation? number # How much the phase differs from guide to guide: 0 not at all, 1 by up to a whole turn. [0 to 1; default 0]
+---@field radius_variation? number # How much the radius differs from guide to guide, as a part of it. [0 to 1; default 0]
+---@field priority? number # Order within the queue: higher acts first. [whole; default 0]
+---@field noise? number # Standard deviation of gaussian noise on the displacement, as a part of the radius. [0 to 10; default 0]
+---@field name? string # What messages and the debug view call it.
+
+---A natural domain that curls hair into a helix; with `radius_tip` a conical one.
+---@param fields coif.domain.curl.fields
+---@return coif.Domain
+function coif.domain.curl(fields) end
+
+---What `coif.domain.natural` takes.
+---@class (exact) coif.domain.natural.fields
+---@field box coif.Box|coif.box.fields # Where it acts.
+---@field curve fun(u: number): number, number? # Takes a number from 0 to 1, returns the offsets away from the head and to the side, in cm.
+---@field over? "period"|"part"|"length" # What the function's number runs over. [default "period"]
+---@field period? number # Length along the strand that the function runs over; not used over "part". [cm; 0.05 to 1000; default 5]
+---@field smooth? number # Part of the length over which the curve rises at its start. [0.001 to 0.5; default 0.25]
+---@field smooth_end? number # Part of the length over which it falls at its end, 0 for not at all; as `smooth` when left out. [0 to 0.5]
+---@field phase? number # Where in the period it starts. [degrees; -360 to 360; default 0]
+---@field phase_variation? number # How much the phase differs from guide to guide: 0 not at all, 1 by up to a whole period. [0 to 1; default 0]
+---@field radius_variation? number # How much the offsets differ from guide to guide, as a part of them. [0 to 1; default 0]
+---@field tilt? number # Turns the offsets about the strand. [degrees; -360 to 360; default 0]
+---@field priority? number # Order within the queue: higher acts first. [whole; default 0]
+---@field noise? number # Standard deviation of gaussian noise on the displacement, as a part of the offset. [0 to 10; default 0]
+---@field name? string # What messages and the debug view call it.
+
+---A natural domain with any curve, given as a function of 0 to 1 that returns two offsets in cm: away from the
+---head, and to the side.
+---@param fields coif.domain.natural.fields
+---@return coif.Domain
+function coif.domain.natural(fields) end
+
+---What `coif.queue` takes.
+---@class (exact) coif.queue.fields
+---@field [integer] coif.Domain # Its domains, in any order.
+
+---A queue of domains. Those of equal priority form a stage; only the first stage is visible, and the next one
+---becomes so when a strand was let go by every domain of it.
+---@param fields coif.queue.fields
+---@return coif.Queue
+function coif.queue(fields) end
+
+---What `coif.material.hair` takes.
+---@class (exact) coif.material.hair.fields
+---@field root_colour? coif.Colour # Colour at the root. [default "#2e1b12"]
+---@field tip_colour? coif.Colour # Colour at the tip. [default "#6b432b"]
+---@field variation? number # How far single strands differ in brightness: 0 all alike, 1 from black to white. [0 to 1; default 0.15]
+---@field width? number # Diameter at the root; real hair has 0.006 to 0.01, a preview with fewer strands wants more. [cm; 0.0005 to 1; default 0.02]
+---@field taper? number # Diameter at the tip as a fraction of `width`. [0 to 1; default 0.3]
+---@field shine? number # Strength of the highlight: 0 dull, 1 glossy. [0 to 1; default 0.5]
+---@field roughness? number # Width of the highlight: 0 a thin line, 1 broad and soft. [0 to 1; default 0.4]
+
+---How hair looks: colours, width, shine.
+---@param fields? coif.material.hair.fields
+---@return coif.HairMaterial
+function coif.material.hair(fields) end
+
+---What `coif.scene` takes.
+---@class (exact) coif.scene.fields
+---@field [integer] any # The head and the hair, in any number and order; lists in the list are taken apart.
+---@field views? ("front"|"back"|"left"|"right"|"top"|"three-quarter"|"back-three-quarter")[] # The views of the preview, in order. [default { "front", "left", "back" }]
+---@field background? "white"|"dark" # The colour behind everything. [default "white"]
+---@field skin? coif.Colour # Colour of the head. [default "#d9b8a3"]
+
+---Puts together what the pictures and files show. A script ends with `return coif.scene { head, hair }`.
+---@param fields? coif.scene.fields
+---@return coif.Scene
+function coif.scene(fields) end
+
+---A head in head space: its origin lies between the ears, x points to its left, y up, z to the front, in cm.
+---@class coif.Head
+---@field scale number # Height from chin to vertex over an adult's 23 cm; offsets are multiplied by it.
+---@field name string # What it is called: `mannequin`, or its file.
+---@field centre vector # The middle of the skull.
+local Head = {}
+
+---A landmark plus an offset in cm (to the head's left, up, to the front) that grows with the head.
+---@param landmark "vertex"|"forehead"|"left_temple"|"right_temple"|"left_ear"|"right_ear"|"occiput"|"nape"|"chin" # `vertex`, `forehead`, `left_temple`, `right_temple`, `left_ear`, `right_ear`, `occiput`, `nape`, `chin`.
+---@param offset? coif.Point # From there, for an adult's head. [cm; default { 0, 0, 0 }]
+---@return vector
+function Head:at(landmark, offset) end
+
+---A half of the space about the head, or all of it, as a box.
+---@param name "all"|"behind"|"front"|"left"|"right"|"above"|"below" # `all`, `behind`, `front`, `left`, `right`, `above`, `below` the ears.
+---@return coif.Box
+function Head:box(name) end
+
+---What `Head:point` takes.
+---@class (exact) coif.Head.point.fields
+---@field azimuth? number # From the face towards the head's left: 90 is the left ear, 180 the back. [degrees; -360 to 360; default 0]
+---@field elevation? number # Upwards: 90 is the top. [degrees; -90 to 90; default 0]
+---@field height? number # Over the skin, for an adult's head. [cm; -20 to 200; default 0]
+
+---A place over the skin, in a direction from the middle of the skull.
+---@param fields? coif.Head.point.fields
+---@return vector
+function Head:point(fields) end
+
+---The place of the skin that is nearest to a point.
+---@param point coif.Point # Any point. [cm]
+---@return vector
+function Head:skin(point) end
+
+---The direction straight out of the skin, at the place nearest to a point.
+---@param point coif.Point # Any point. [cm]
+---@return vector
+function Head:normal(point) end
+
+---The natural scalp: where hair grows on a person.
+---@return coif.Region
+function Head:scalp() end
+
+---What `Head:region` takes.
+---@class (exact) coif.Head.region.fields
+---@field [integer] coif.Point # Points of the curve, in order, three or more; they are laid on the head.
+---@field smooth? boolean # False for straight edges. [default true]
+
+---A region that a closed curve on the head encloses.
+---@param fields coif.Head.region.fields
+---@return coif.Region
+function Head:region(fields) end
+
+---A group, an object or a material of the head's file, as a region.
+---@param name string # Its name.
+---@return coif.Region
+function Head:group(name) end
+
+---A region from a picture over the head's texture coordinates: white grows hair, black none, grey less.
+---@param file string # A PNG file, beside the script or below its folder.
+---@return coif.Region
+function Head:mask(file) end
+
+---What `Head:parting` takes.
+---@class (exact) coif.Head.parting.fields
+---@field [integer] coif.Point # Points of the line, in order, two or more; they are laid on the skin.
+
+---A parting: a line on the scalp that strands never blend across. Lay it through a region by `Region:parting`.
+---@param fields coif.Head.parting.fields
+---@return coif.Parting
+function Head:parting(fields) end
+
+---A line on the scalp that strands never blend across.
+---@class coif.Parting
+local Parting = {}
+
+---Tells the side of a parting: 1 on the head's left of a parting that runs from the forehead backward, -1 on its
+---right, 0 on it.
+---@param point coif.Point # Any point. [cm]
+---@return number
+function Parting:side(point) end
+
+---A part of a head's surface, with a density.
+---@class coif.Region
+---@field area number # Its area in square centimetres, each place weighted with its density.
+---@operator add(coif.Region): coif.Region
+---@operator sub(coif.Region): coif.Region
+---@operator mul(coif.Region): coif.Region
+local Region = {}
+
+---What `Region:guides` takes.
+---@class (exact) coif.Region.guides.fields
+---@field count? number # How many. [whole; 1 or more; default 800]
+---@field length? number # The longest strand's length. [cm; 0.05 to 1000; default 25]
+---@field length_variation? number # How much shorter strands may be, as a part of the length: 0 all alike, 1 down to nothing. [0 to 1; default 0.1]
+---@field step? number # Length of a growth step. [cm; 0.01 to 100; default 0.5]
+---@field stiffness? number # Resistance to bending: weight of the last tangent against the force. [0 to 10000; default 3]
+---@field limit? number # Greatest number of growth steps; as many as the length needs when left out. [whole; 1 to 1000000]
+---@field lay? coif.Direction # Where to strands lie from the first, along the skin.
+---@field lay_from? coif.Point # Strands lie away from this point from the first: a whorl. With `lay` both act. [cm]
+---@field lay_amount? number # How flat they lie: 0 stands upright on the skin, 1 lies on it; counts with `lay` or `lay_from`. [0 to 1; default 0.7]
+---@field noise? number # Standard deviation of the gaussian noise on the first direction. [0 to 10; default 0]
+---@field seed? number # Another seed gives other random numbers. [whole; default 0]
+---@field density? number # Guides per square centimetre, instead of `count`. [1/cm^2; 0.0001 to 10000]
+
+---Guides: the strands that are grown through the domains, each standing for one wisp.
+---@param fields? coif.Region.guides.fields
+---@return coif.Guides
+function Region:guides(fields) end
+
+---What is in either of two regions; also written `a + b`.
+---@param other coif.Region # The other region, of the same head.
+---@return coif.Region
+function Region:union(other) end
+
+---What is in both of two regions; also written `a * b`.
+---@param other coif.Region # The other region, of the same head.
+---@return coif.Region
+function Region:intersect(other) end
+
+---What is in this region and not in another; also written `a - b`.
+---@param other coif.Region # The other region, of the same head.
+---@return coif.Region
+function Region:minus(other) end
+
+---The rest of the head.
+---@return coif.Region
+function Region:complement() end
+
+---The part of the region for whose places a function returns true.
+---@param test fun(place: vector): boolean # Takes a place on the head (a vector), returns true or false.
+---@return coif.Region
+function Region:where(test) end
+
+---The same region with hair thinned out.
+---@param density number|fun(place: vector): number # A number from 0 to 1, or a function that takes a place on the head (a vector) and returns one.
+---@return coif.Region
+function Region:density(density) end
+
+---The same region with a parting through it: strands on its two sides never blend.
+---@param line coif.Parting|coif.Point[] # A parting, or a list of points to lay one through.
+---@return coif.Region
+function Region:parting(line) end
+
+---Tells whether the place of the skin nearest to a point is in the region.
+---@param point coif.Point # Any point. [cm]
+---@return boolean
+function Region:contains(point) end
+
+---Roots of the strands that stand for wisps; `grow` makes strands of them.
+---@class coif.Guides
+---@field count number # How many.
+---@field roots vector[] # Where they stand, as a list of vectors.
+local Guides = {}
+
+---Queues for some of the guides.
+---@class (exact) coif.Guides.grow.locals
+---@field where fun(root: vector): boolean # Takes a guide's root (a vector), returns true if the queue acts on that guide.
+---@field queue coif.Queue # The queue.
+
+---What `Guides:grow` takes.
+---@class (exact) coif.Guides.grow.fields
+---@field global? coif.Queue # The queue for all guides.
+---@field locals? coif.Guides.grow.locals[] # Queues for some of the guides.
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.05]
+
+---Grows guides through queues of domains. The global queue acts on every guide; of the local queues the first one
+---whose `where` is true for a guide's root acts on that guide too, at the same time and with equal rank.
+---@param fields? coif.Guides.grow.fields
+---@return coif.Strands
+function Guides:grow(fields) end
+
+---Strands of hair on a head.
+---@class coif.Strands
+---@field count number # How many strands.
+local Strands = {}
+
+---What `Strands:natural` takes.
+---@class (exact) coif.Strands.natural.fields
+---@field [integer] coif.Domain # The natural domains.
+---@field where? fun(root: vector): boolean # Takes a strand's root (a vector), returns true for the strands to change; all when left out.
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.05]
+---@field seed? number # Another seed gives other random numbers. [whole; default 0]
+
+---Lays waves and curls over strands. The domains form a queue of their own, by their priorities: each acts on the
+---part of a strand inside its box, one stage after the other.
+---@param fields coif.Strands.natural.fields
+---@return coif.Strands
+function Strands:natural(fields) end
+
+---What `Strands:fill` takes.
+---@class (exact) coif.Strands.fill.fields
+---@field strands? number # How many strands. [whole; 1 or more; default 40000]
+---@field nodes? number # Nodes per strand; as many as the guides have, at most 128, when left out. [whole; 2 to 4096]
+---@field neighbours? number # How many guides a strand follows at most. [whole; 1 to 8; default 4]
+---@field length_variation? number # How much shorter strands may be than their guides, as a part of the length. [0 to 1; default 0.05]
+---@field noise? number # Standard deviation of the gaussian noise on the tangents, smooth along the strand. [0 to 10; default 0.02]
+---@field flyaway? number # Part of the strands that stray, with six times the noise. [0 to 1; default 0]
+---@field clump? number # How far strands gather round their guide: 0 leaves them evenly spread, 1 brings all tips to the guide's tip. [0 to 1; default 0]
+---@field clump_start? number # Where along the strand gathering begins, as a part of the length. [0 to 0.95; default 0]
+---@field thickness? number # Depth of the layer of hair over the guides. [cm; 0 to 20; default 0.4]
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.03]
+---@field seed? number # Another seed gives other random numbers. [whole; default 0]
+---@field density? number # Strands per square centimetre, instead of `strands`. [1/cm^2; 0.0001 to 100000]
+---@field region? coif.Region # Where to fill; where the guides grow when left out.
+---@field material? coif.HairMaterial|coif.material.hair.fields # How the hair looks: `coif.material.hair { ... }`.
+
+---Fills the scalp with strands between guides.
+---@param fields? coif.Strands.fill.fields
+---@return coif.Strands
+function Strands:fill(fields) end
+
+---The same strands with another look.
+---@param material coif.HairMaterial|coif.material.hair.fields # `coif.material.hair { ... }`, or its fields.
+---@return coif.Strands
+function Strands:material(material) end
+
+---Figures: `strands`, `points`, `guides`, `mean_length`, `longest`, `shortest` (cm), `inside` (strands with a node
+---or a segment inside the head), `min` and `max` (corners of the bounding box).
+---@return table<string, any>
+function Strands:stats() end
+
+---A box, whose axes may be turned.
+---@class coif.Box
+---@field centre vector # Its middle.
+---@field size vector # Its edge lengths.
+local Box = {}
+
+---Tells whether a point is inside the box.
+---@param point coif.Point # Any point. [cm]
+---@return boolean
+function Box:contains(point) end
+
+---A styling constraint with a region where it acts.
+---@class coif.Domain
+local Domain = {}
+
+---Domains in stages; a stage acts when the one before it has let go.
+---@class coif.Queue
+local Queue = {}
+
+---How hair looks; made by `coif.material.hair`.
+---@class coif.HairMaterial
+local HairMaterial = {}
+
+---A finished hairstyle.
+---@class coif.Scene
+local Scene = {}

@@ -1,0 +1,3 @@
+local head = coif.head()
+
+return coif.scene { head, views = { "front", "left", "back" } }
