@@ -56,6 +56,7 @@ fn main() {
         tolerance: 0.05,
         guides: false,
         count_inside: false,
+        triangles: None,
     };
     println!("{strands} strands, 3 views of {SIZE} x {SIZE}, {rounds} rounds, {} threads", rayon::current_num_threads());
     let (first, cpu, report) = round(&options, SCRIPT);

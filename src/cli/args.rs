@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::proof::{DiffArguments, SheetArguments, TestArguments};
 use super::show::Show;
 use crate::export::StrandForm;
 use crate::head::load::Unit;
@@ -41,6 +42,12 @@ pub enum Command {
     New(NewArguments),
     /// Write the definitions for editors and the reference of all functions
     Api(ApiArguments),
+    /// Draw variations of a style on one contact sheet
+    Sheet(Box<SheetArguments>),
+    /// Run scripted tests of styles, *_test.lua
+    Test(TestArguments),
+    /// Tell what changed between two styles, or two versions of one
+    Diff(Box<DiffArguments>),
 }
 
 /// What is common to every command that runs a script.
@@ -163,7 +170,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     }
 }
 
-fn seconds(text: &str) -> Result<Duration, String> {
+pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if seconds > 0.0 && seconds <= 1e6 {
         Ok(Duration::from_secs_f64(seconds))
@@ -184,11 +191,11 @@ fn choice<T>(text: &str, texts: &[&str], parse: fn(&str) -> Option<T>) -> Result
     })
 }
 
-fn background(text: &str) -> Result<Background, String> {
+pub(super) fn background(text: &str) -> Result<Background, String> {
     choice(text, Background::TEXTS, Background::parse)
 }
 
-fn view(text: &str) -> Result<View, String> {
+pub(super) fn view(text: &str) -> Result<View, String> {
     choice(text, View::TEXTS, View::parse)
 }
 

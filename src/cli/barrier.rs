@@ -20,9 +20,17 @@ const STACK: usize = 16 << 20;
 /// # Errors
 /// An exit code, after having said why.
 pub fn run<R: Send>(arguments: &ScriptArguments, work: impl FnOnce(&Task) -> R + Send) -> Result<R, u8> {
+    on(arguments.threads, work)
+}
+
+/// The same on so many threads; all of the machine's when not given.
+///
+/// # Errors
+/// An exit code, after having said why.
+pub fn on<R: Send>(threads: Option<u16>, work: impl FnOnce(&Task) -> R + Send) -> Result<R, u8> {
     let task = Task::new();
     listen(&task);
-    let pool = pool(arguments)?;
+    let pool = pool(threads)?;
     caught(|| pool.install(|| work(&task))).map_err(|message| {
         say(&format!("error: {message}\n"));
         INTERNAL
@@ -33,13 +41,13 @@ pub fn run<R: Send>(arguments: &ScriptArguments, work: impl FnOnce(&Task) -> R +
 ///
 /// # Errors
 /// An exit code, after having said why.
-pub fn pool(arguments: &ScriptArguments) -> Result<ThreadPool, u8> {
+pub fn pool(threads: Option<u16>) -> Result<ThreadPool, u8> {
     std::panic::set_hook(Box::new(|info| {
         if let Ok(mut last) = PANIC.lock() {
             last.get_or_insert(info.to_string());
         }
     }));
-    let threads = arguments.threads.map_or(0, usize::from);
+    let threads = threads.map_or(0, usize::from);
     rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build().map_err(|e| {
         say(&format!("error: cannot start threads: {e}\n"));
         INTERNAL

@@ -5,6 +5,8 @@
 mod args;
 mod barrier;
 mod progress;
+mod proof;
+mod proof_text;
 mod show;
 mod text;
 mod watch;
@@ -55,6 +57,9 @@ pub fn main() -> ExitCode {
         Command::Params(params) => command_params(&params),
         Command::New(new) => command_new(&new),
         Command::Api(api) => command_api(&api),
+        Command::Sheet(sheet) => proof::command_sheet(&sheet),
+        Command::Test(test) => proof::command_test(&test),
+        Command::Diff(diff) => proof::command_diff(&diff),
     })
 }
 

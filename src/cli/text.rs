@@ -170,7 +170,7 @@ fn plain(value: &crate::params::Value) -> Value {
 }
 
 /// `40,000`.
-fn thousands(n: usize) -> String {
+pub(super) fn thousands(n: usize) -> String {
     let digits = n.to_string();
     let mut out = String::new();
     for (i, c) in digits.chars().enumerate() {
@@ -183,7 +183,7 @@ fn thousands(n: usize) -> String {
 }
 
 /// `412 ms`, `3.2 s`.
-fn milliseconds(time: Duration) -> String {
+pub(super) fn milliseconds(time: Duration) -> String {
     let seconds = time.as_secs_f64();
     if seconds < 0.01 {
         format!("{:.1} ms", seconds * 1e3)
@@ -195,7 +195,7 @@ fn milliseconds(time: Duration) -> String {
 }
 
 /// `812 kB`, `41.2 MB`.
-fn size(bytes: usize) -> String {
+pub(super) fn size(bytes: usize) -> String {
     match bytes {
         0..1_000 => format!("{bytes} B"),
         1_000..1_000_000 => format!("{:.0} kB", bytes as f64 / 1e3),

@@ -7,6 +7,7 @@ pub mod bvh;
 pub mod curtain;
 pub mod curve;
 pub mod frames;
+pub mod measure;
 pub mod mesh;
 pub mod obox;
 pub mod polygon;

@@ -4,6 +4,7 @@ use glam::{Mat3, Vec2, Vec3};
 use rayon::prelude::*;
 
 use crate::geometry::Bounds;
+use crate::math::trig;
 use crate::scene::{Body, Scene, View};
 
 /// An orthographic camera over a picture of `width` x `height` pixels.
@@ -58,13 +59,24 @@ impl Camera {
     }
 }
 
+fn upright(toward: Vec3) -> Mat3 {
+    let toward = toward.normalize();
+    let right = Vec3::Y.cross(toward).normalize();
+    Mat3::from_cols(right, toward.cross(right), toward)
+}
+
+/// The axes of a level view, as [`axes`]: `azimuth` radians from the front towards the head's left. The quarters are
+/// exactly front, left, back and right.
+pub fn turned(azimuth: f32) -> Mat3 {
+    let quarters = azimuth / std::f32::consts::FRAC_PI_2;
+    if (quarters - quarters.round()).abs() < 1e-5 {
+        return axes([View::Front, View::Left, View::Back, View::Right][quarters.round().rem_euclid(4.0) as usize]);
+    }
+    upright(Vec3::new(trig::sin(azimuth), 0.0, trig::cos(azimuth)))
+}
+
 /// The axes of a view as columns: right, up, toward the viewer.
 pub fn axes(view: View) -> Mat3 {
-    let upright = |toward: Vec3| {
-        let toward = toward.normalize();
-        let right = Vec3::Y.cross(toward).normalize();
-        Mat3::from_cols(right, toward.cross(right), toward)
-    };
     match view {
         View::Front => upright(Vec3::Z),
         View::Back => upright(Vec3::NEG_Z),
@@ -89,7 +101,7 @@ pub struct Framing {
 ///
 /// Landmarks are not part of a scene, so "head" is what lies above 1.5 times the height of the vertex over the origin
 /// (the middle between the ears), measured downward: that is a hand's breadth under the chin.
-pub fn frame(scene: &Scene, views: &[View]) -> Framing {
+pub fn frame(scene: &Scene, views: &[Mat3]) -> Framing {
     let mut points: Vec<Vec3> = Vec::new();
     for part in &scene.parts {
         match &part.body {
@@ -120,8 +132,7 @@ pub fn frame(scene: &Scene, views: &[View]) -> Framing {
     let mut size = Vec2::splat(1e-3);
     let centres = views
         .iter()
-        .map(|&view| {
-            let turn = axes(view);
+        .map(|&turn| {
             let b = points
                 .par_chunks(1 << 14)
                 .map(|some| Bounds::of(some.iter().map(|&p| turn.transpose() * p)))
@@ -149,6 +160,18 @@ mod tests {
         assert!(axes(View::Right).x_axis.dot(Vec3::Z) > 0.99);
         assert!(axes(View::Top).y_axis.dot(Vec3::Z) < -0.99);
         assert!(axes(View::Back).x_axis.dot(Vec3::X) < -0.99);
+    }
+
+    #[test]
+    fn a_turn_passes_the_named_views() {
+        for (degrees, view) in [(0.0, View::Front), (90.0, View::Left), (180.0, View::Back), (270.0, View::Right)] {
+            for whole in [0.0_f32, 360.0, -360.0] {
+                assert_eq!(turned((degrees + whole).to_radians()), axes(view), "{degrees} {whole}");
+            }
+        }
+        let m = turned(45.0_f32.to_radians());
+        assert!((m.transpose() * m - Mat3::IDENTITY).abs_diff_eq(Mat3::ZERO, 1e-5) && m.determinant() > 0.0);
+        assert!(m.z_axis.x > 0.7 && m.z_axis.z > 0.7 && m.y_axis.abs_diff_eq(Vec3::Y, 1e-6));
     }
 
     #[test]

@@ -3,9 +3,11 @@
 //! [`sheet()`] does everything; it sees only a [`Scene`](crate::scene::Scene). The way of the data: [`camera`] frames the
 //! views; [`shadow`] finds how much light reaches each place; [`surface`] draws the head, [`toon`] draws it in flat tones with ink lines; [`strands`] projects and
 //! simplifies the hair, [`raster`] lays it down front to back, [`shade`] gives it colour; [`overlay`] makes the debug
-//! view; [`lettering`] writes; [`png`] codes.
+//! view; [`lettering`] writes; [`png`] codes. [`contact`] lays pictures out, [`compare`] tells how far two differ.
 
 pub mod camera;
+pub mod compare;
+pub mod contact;
 pub mod fast;
 pub mod lettering;
 pub mod overlay;
@@ -21,5 +23,7 @@ pub mod toon;
 #[cfg(test)]
 mod tests;
 
+pub use compare::{Difference, compare};
+pub use contact::{Cell, contact};
 pub use png::{PngError, Speed};
-pub use sheet::{Picture, RenderError, SheetOptions, sheet};
+pub use sheet::{Picture, RenderError, SheetOptions, sheet, views};

@@ -50,6 +50,29 @@ pub fn encode(picture: &Picture, speed: Speed) -> Result<Vec<u8>, PngError> {
     Ok(bytes)
 }
 
+/// Most pixels of a picture that is read back.
+const MOST_PIXELS: u64 = 64_000_000;
+
+/// The picture in a PNG file; an alpha channel is dropped.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn decode(bytes: &[u8]) -> Result<Picture, String> {
+    let mut decoder = ::png::Decoder::new(std::io::Cursor::new(bytes));
+    decoder.set_transformations(::png::Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info().map_err(|e| e.to_string())?;
+    let (width, height) = reader.info().size();
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        return Err(format!("{width} x {height} pixels are too many"));
+    }
+    let mut raw = vec![0; reader.output_buffer_size().ok_or("it is too large")?];
+    let info = reader.next_frame(&mut raw).map_err(|e| e.to_string())?;
+    let channels = info.color_type.samples();
+    let colour = |p: &[u8]| if channels < 3 { [p[0]; 3] } else { [p[0], p[1], p[2]] };
+    let pixels = raw[..info.buffer_size()].chunks_exact(channels).flat_map(colour).collect();
+    Ok(Picture { width, height, pixels })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,6 +88,8 @@ mod tests {
             let info = reader.next_frame(&mut back).unwrap();
             assert_eq!((info.width, info.height, info.color_type), (37, 11, ::png::ColorType::Rgb));
             assert_eq!(back, picture.pixels);
+            assert_eq!(decode(&bytes).unwrap(), picture);
+            assert!(decode(&bytes[..bytes.len() / 2]).is_err());
         }
     }
 

@@ -1,6 +1,6 @@
 //! The preview sheet: every view at one scale, with quiet lettering.
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 use tiny_skia::{Paint, Pixmap, Rect, Transform};
 
 use crate::geometry::{Mesh, Strands};
@@ -81,7 +81,7 @@ pub enum RenderError {
 }
 
 /// Most pixels of a sheet, in millions.
-const MOST_PIXELS: u64 = 200;
+pub(super) const MOST_PIXELS: u64 = 200;
 
 /// Where everything stands on the sheet, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,13 +143,13 @@ impl Layout {
 }
 
 /// Colours of paper and ink.
-struct Paper {
-    paper: Colour,
-    ink: Colour,
-    quiet: Colour,
+pub(super) struct Paper {
+    pub paper: Colour,
+    pub ink: Colour,
+    pub quiet: Colour,
 }
 
-fn paper(background: Background) -> Paper {
+pub(super) fn paper(background: Background) -> Paper {
     match background {
         Background::White => {
             Paper { paper: Colour::hex(0xff_ff_ff), ink: Colour::hex(0x2b_2d_31), quiet: Colour::hex(0x8c_90_98) }
@@ -171,11 +171,12 @@ pub fn sheet(scene: &Scene, options: &SheetOptions, task: &Task) -> Result<Pictu
     task.progress("density", 0.0);
     let stage = Stage::new(scene, task)?;
     task.progress("framing", 0.0);
-    let framing = frame(scene, views);
+    let sights: Vec<Mat3> = views.iter().map(|&view| axes(view)).collect();
+    let framing = frame(scene, &sights);
     let mut picture = blank(layout.width, layout.height, paper.paper);
     let mut labels = Vec::new();
-    for (i, &view) in views.iter().enumerate() {
-        let camera = camera(view, framing.centres[i], &framing, options);
+    for (i, &sight) in sights.iter().enumerate() {
+        let camera = camera(sight, framing.centres[i], &framing, options);
         let words = stage.view(scene, &camera, options, paper.paper, task).map(|(pixels, words)| {
             paste(&mut picture, &pixels, layout.corner(i, options), options.width);
             words
@@ -189,9 +190,39 @@ pub fn sheet(scene: &Scene, options: &SheetOptions, task: &Task) -> Result<Pictu
     Ok(picture)
 }
 
+/// Draws the scene alone, without lettering: one picture for each direction (columns of a sight: right, up, toward the
+/// viewer; see [`axes`](super::camera::axes) and [`turned`](super::camera::turned)), all at one scale.
+///
+/// Without a framing of your own the pixels are those that [`sheet`] gives for the same views.
+///
+/// # Errors
+/// [`RenderError`]: cancelled, or a size out of range.
+pub fn views(
+    scene: &Scene,
+    sights: &[Mat3],
+    framing: Option<&Framing>,
+    options: &SheetOptions,
+    task: &Task,
+) -> Result<Vec<Picture>, RenderError> {
+    Layout::new(sights.len(), &SheetOptions { lettering: false, columns: None, ..*options })?;
+    let paper = paper(scene.look.background);
+    let stage = Stage::new(scene, task)?;
+    let own = if framing.is_none() { Some(frame(scene, sights)) } else { None };
+    let Some(framing) = framing.or(own.as_ref()) else { return Ok(vec![]) };
+    sights
+        .iter()
+        .zip(&framing.centres)
+        .map(|(&sight, &centre)| {
+            let camera = camera(sight, centre, framing, options);
+            let (pixels, _) = stage.view(scene, &camera, options, paper.paper, task)?;
+            Ok(Picture { width: options.width, height: options.height, pixels })
+        })
+        .collect()
+}
+
 /// One scale for all views, with room around the largest.
-fn camera(view: View, centre: Vec3, framing: &Framing, options: &SheetOptions) -> Camera {
-    let m = axes(view);
+fn camera(sight: Mat3, centre: Vec3, framing: &Framing, options: &SheetOptions) -> Camera {
+    let m = sight;
     let (w, h) = (options.width as f32, options.height as f32);
     let scale = (0.88 * w / framing.size.x).min(0.92 * h / framing.size.y);
     Camera {
@@ -205,13 +236,13 @@ fn camera(view: View, centre: Vec3, framing: &Framing, options: &SheetOptions) -
     }
 }
 
-fn blank(width: u32, height: u32, colour: Colour) -> Picture {
+pub(super) fn blank(width: u32, height: u32, colour: Colour) -> Picture {
     let [r, g, b] = super::fast::encode(colour.to_linear());
     let pixels = [r, g, b].repeat(width as usize * height as usize);
     Picture { width, height, pixels }
 }
 
-fn paste(picture: &mut Picture, view: &[u8], (x, y): (u32, u32), width: u32) {
+pub(super) fn paste(picture: &mut Picture, view: &[u8], (x, y): (u32, u32), width: u32) {
     let row = width as usize * 3;
     for (i, line) in view.chunks_exact(row).enumerate() {
         let at = ((y as usize + i) * picture.width as usize + x as usize) * 3;
@@ -363,7 +394,7 @@ fn letter(
             }
         }
     }
-    let scale = camera(View::Front, Vec3::ZERO, framing, options).scale;
+    let scale = camera(Mat3::IDENTITY, Vec3::ZERO, framing, options).scale;
     let base = h - 1.3 * size;
     let end = scale_bar(&mut pixmap, scale, margin, base, options.width as f32 * 0.4, size, paper.quiet);
     if scene.look.debug {
@@ -374,12 +405,12 @@ fn letter(
     }
 }
 
-fn to_pixmap(picture: &Picture) -> Option<Pixmap> {
+pub(super) fn to_pixmap(picture: &Picture) -> Option<Pixmap> {
     let bytes = picture.pixels.chunks_exact(3).flat_map(|c| [c[0], c[1], c[2], 255]).collect();
     Pixmap::from_vec(bytes, tiny_skia::IntSize::from_wh(picture.width, picture.height)?)
 }
 
-fn fill(pixmap: &mut Pixmap, x: f32, y: f32, w: f32, h: f32, colour: Colour) {
+pub(super) fn fill(pixmap: &mut Pixmap, x: f32, y: f32, w: f32, h: f32, colour: Colour) {
     let mut paint = Paint { anti_alias: false, ..Paint::default() };
     if let (Some(rect), Some(c)) =
         (Rect::from_xywh(x.round(), y.round(), w, h), tiny_skia::Color::from_rgba(colour.r, colour.g, colour.b, 1.0))

@@ -232,6 +232,11 @@ impl Call<'_> {
         }
     }
 
+    /// The VM.
+    pub fn lua(&self) -> &Lua {
+        self.lua
+    }
+
     /// For long computations.
     pub fn task(&self) -> &Task {
         &self.session.task

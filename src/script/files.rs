@@ -172,6 +172,11 @@ impl Access {
         self.asked.lock().map(|a| a.clone()).unwrap_or_default()
     }
 
+    /// The files behind it.
+    pub fn files(&self) -> Arc<dyn Files> {
+        Arc::clone(&self.files)
+    }
+
     /// Reads a file.
     ///
     /// # Errors

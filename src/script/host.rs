@@ -1,6 +1,5 @@
 //! One run of a script, from its text to its scene.
 
-use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -10,7 +9,7 @@ use std::time::Duration;
 use mlua::{Lua, MultiValue};
 
 use super::convert::Reading;
-use super::files::{Access, Files};
+use super::files::Files;
 use super::sandbox::{Deadline, Interruptible};
 use super::session::{Raised, Session, Timing};
 use super::{Diagnostic, Memo, Parameter, Sources, bind, protect, sandbox, trace};
@@ -100,21 +99,14 @@ pub struct Outcome {
 
 /// Runs a script. The task is spent afterwards: running out of time cancels it.
 pub fn run(options: &Options, files: Arc<dyn Files>, task: &Task) -> Outcome {
-    let allowed = [options.folder()].into_iter().chain(options.allow.clone()).chain(options.head.clone());
-    let session = Rc::new(Session {
-        options: options.clone(),
-        access: Access::new(files, allowed),
-        task: task.clone(),
-        sources: RefCell::default(),
-        warnings: RefCell::default(),
-        log: RefCell::default(),
-        logged: Cell::new(0),
-        parameters: RefCell::default(),
-        timings: RefCell::default(),
-        heads: RefCell::default(),
-    });
+    run_session(&Rc::new(Session::new(options, files, [], task)))
+}
+
+/// Runs the script of a session.
+pub(super) fn run_session(session: &Rc<Session>) -> Outcome {
+    let (options, task) = (&session.options, &session.task);
     let deadline = Deadline::start(task, options.time_limit);
-    let result = script(&session).and_then(|scene| unknown_parameters(&session).map(|()| scene));
+    let result = script(session).and_then(|scene| unknown_parameters(session).map(|()| scene));
     let (ending, scene, mut diagnostics) = match result {
         _ if deadline.has_passed() => (Ending::Failed, None, vec![out_of_time(options)]),
         _ if task.is_cancelled() => (Ending::Cancelled, None, vec![]),
@@ -135,6 +127,16 @@ pub fn run(options: &Options, files: Arc<dyn Files>, task: &Task) -> Outcome {
 }
 
 fn script(session: &Rc<Session>) -> Result<Scene, Raised> {
+    let (lua, returned) = chunk(session, bind::install)?;
+    scene(&lua, session, &session.options.script.to_string_lossy(), returned)
+}
+
+/// Runs a session's file from its first line to its last, with what `install` makes of the global `coif`; gives what it
+/// returned.
+pub(super) fn chunk(
+    session: &Rc<Session>,
+    install: impl FnOnce(&Lua) -> mlua::Result<()>,
+) -> Result<(Lua, MultiValue), Raised> {
     let path = &session.options.script;
     let file = path.to_string_lossy().into_owned();
     let bytes =
@@ -144,12 +146,11 @@ fn script(session: &Rc<Session>) -> Result<Scene, Raised> {
     session.sources.borrow_mut().insert(file.clone(), text.clone());
     let internal = |e: mlua::Error| Raised(vec![Diagnostic::error(format!("cannot start the script: {e}"))]);
     let lua = sandbox::open(Rc::clone(session)).map_err(internal)?;
-    bind::install(&lua).and_then(|()| sandbox::close(&lua)).map_err(internal)?;
+    install(&lua).and_then(|()| sandbox::close(&lua)).map_err(internal)?;
     let chunk = lua.load(text).set_name(format!("@{file}")).set_mode(mlua::chunk::ChunkMode::Text);
     let main = chunk.into_function().map_err(|e| trace::syntax(session, &e))?;
     let returned = Interruptible::run(&lua, &session.task, || protect::call(&lua, &main, MultiValue::new()));
-    let returned = returned.map_err(internal)??;
-    scene(&lua, session, &file, returned)
+    Ok((lua, returned.map_err(internal)??))
 }
 
 /// The scene that a script returned.
@@ -193,7 +194,8 @@ fn unknown_parameters(session: &Session) -> Result<(), Raised> {
     if unknown.is_empty() { Ok(()) } else { Err(Raised(unknown)) }
 }
 
-fn out_of_time(options: &Options) -> Diagnostic {
+/// The error of a run that was stopped by its time limit.
+pub(super) fn out_of_time(options: &Options) -> Diagnostic {
     let seconds = options.time_limit.as_secs_f64();
     Diagnostic::error(format!("`{}` ran longer than {seconds} s", options.script.display()))
         .hint("look for a loop without end, or give it more: `--time-limit 300`")

@@ -22,6 +22,7 @@ mod session;
 mod show;
 mod source;
 mod strict;
+mod testing;
 mod trace;
 
 #[cfg(test)]
@@ -35,3 +36,4 @@ pub use memo::{Kept, Memo, Origin};
 pub use session::Timing;
 pub use show::{show, show_all};
 pub use source::Sources;
+pub use testing::{Declared, Preview, TestOutcome, run_test};

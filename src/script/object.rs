@@ -1,6 +1,6 @@
 //! The one userdata type: a value that Coif made, with the methods that the registry gives its noun.
 
-use mlua::{Lua, MetaMethod, UserData, UserDataMethods};
+use mlua::{AnyUserData, Lua, MetaMethod, UserData, UserDataMethods};
 
 use super::call::invoke;
 use super::registry::{self, Noun};
@@ -35,7 +35,15 @@ impl Held {
         if let Some(getter) = noun.getters.iter().find(|g| g.name == key) {
             return super::convert::to_lua(lua, &(getter.get)(&self.0));
         }
+        let mut own = vec![];
+        if let Some(lookup) = noun.lookup {
+            own = (lookup.names)(lua, &self.0)?;
+            if own.iter().any(|n| n == key) {
+                return super::convert::to_lua(lua, &(lookup.get)(lua, &self.0, key)?);
+            }
+        }
         let names = noun.methods.iter().map(|m| m.short_name()).chain(noun.getters.iter().map(|g| g.name));
+        let names = own.iter().map(String::as_str).chain(names);
         Err(strict::unknown(lua, &format!("a {}", noun.name), key, names))
     }
 }
@@ -49,6 +57,18 @@ fn method(lua: &Lua, entry: &'static registry::Entry) -> mlua::Result<mlua::Func
     let function = lua.create_function(move |lua, args: mlua::MultiValue| invoke(lua, &*session(lua)?, entry, args))?;
     lua.set_named_registry_value(&cache, &function)?;
     Ok(function)
+}
+
+/// `value { ... }`: its method `with`, where it has one.
+fn call(lua: &Lua, this: &AnyUserData, args: mlua::MultiValue) -> mlua::Result<mlua::Value> {
+    let noun = this.borrow::<Held>()?.noun();
+    let Some(entry) = noun.and_then(|n| n.methods.iter().find(|m| m.short_name() == "with")) else {
+        let message = format!("attempt to call a {}", noun.map_or("value", |n| n.name));
+        return Err(strict::raise(lua, &message, Some("it is a value, not a function".into()), None));
+    };
+    let mut all = args;
+    all.push_front(mlua::Value::UserData(this.clone()));
+    invoke(lua, &*session(lua)?, entry, all)
 }
 
 /// Signs between two values, and the methods they stand for.
@@ -92,6 +112,9 @@ impl UserData for Held {
                 operate(lua, sign, name, a, b)
             });
         }
+        methods.add_meta_function(MetaMethod::Call, |lua, (this, args): (AnyUserData, mlua::MultiValue)| {
+            call(lua, &this, args)
+        });
         methods.add_meta_method(MetaMethod::ToString, |_, this, ()| {
             Ok(this.noun().map_or_else(|| format!("{:?}", this.0), |n| format!("<{}>", (n.text)(&this.0))))
         });

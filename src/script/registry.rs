@@ -101,6 +101,15 @@ pub struct Getter {
     pub get: fn(&Handle) -> Value,
 }
 
+/// Finds what a noun has by other names than those it was described with: the parts of a tested scene.
+#[derive(Clone, Copy)]
+pub struct Lookup {
+    /// All such names of a value.
+    pub names: fn(&mlua::Lua, &Handle) -> mlua::Result<Vec<String>>,
+    /// What is behind one of them.
+    pub get: fn(&mlua::Lua, &Handle, &str) -> mlua::Result<Value>,
+}
+
 /// A kind of value that Coif makes.
 pub struct Noun {
     /// As messages and the reference call it.
@@ -111,6 +120,8 @@ pub struct Noun {
     pub methods: Vec<Entry>,
     /// Its figures.
     pub getters: Vec<Getter>,
+    /// Names that differ from value to value.
+    pub lookup: Option<Lookup>,
     /// What `tostring` gives, without the angle brackets.
     pub text: fn(&Handle) -> String,
 }
@@ -123,7 +134,14 @@ impl Noun {
         getters: Vec<Getter>,
         text: fn(&Handle) -> String,
     ) -> Self {
-        Self { name: T::NAME, doc, methods, getters, text }
+        Self { name: T::NAME, doc, methods, getters, lookup: None, text }
+    }
+
+    /// The same with names that differ from value to value.
+    #[must_use]
+    pub fn with_lookup(mut self, lookup: Lookup) -> Self {
+        self.lookup = Some(lookup);
+        self
     }
 }
 
@@ -141,6 +159,8 @@ pub struct Constant {
 pub struct Registry {
     /// Functions below `coif`.
     pub functions: Vec<Entry>,
+    /// Functions below `coif` that only `coif test` gives.
+    pub test_functions: Vec<Entry>,
     /// Kinds of values.
     pub nouns: Vec<Noun>,
     /// Constants below `coif`.

@@ -3,13 +3,14 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Duration;
 
 use mlua::Lua;
 
-use super::files::Access;
+use super::files::{Access, Files};
 use super::memo::Origin;
 use super::{Diagnostic, Options, Parameter, Sources};
 use crate::head::Head;
@@ -93,6 +94,23 @@ pub fn session(lua: &Lua) -> mlua::Result<Rc<Session>> {
 }
 
 impl Session {
+    /// A run that is about to begin. It may read below the script's folder, below `more`, and what its options allow.
+    pub fn new(options: &Options, files: Arc<dyn Files>, more: impl IntoIterator<Item = PathBuf>, task: &Task) -> Self {
+        let allowed = [options.folder()].into_iter().chain(options.allow.clone()).chain(options.head.clone());
+        Self {
+            options: options.clone(),
+            access: Access::new(files, allowed.chain(more)),
+            task: task.clone(),
+            sources: RefCell::default(),
+            warnings: RefCell::default(),
+            log: RefCell::default(),
+            logged: Cell::new(0),
+            parameters: RefCell::default(),
+            timings: RefCell::default(),
+            heads: RefCell::default(),
+        }
+    }
+
     /// Notes a warning, once.
     pub fn warn(&self, warning: Diagnostic) {
         let mut warnings = self.warnings.borrow_mut();

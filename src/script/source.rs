@@ -20,6 +20,11 @@ impl Sources {
         self.0.insert(file.into(), text.into());
     }
 
+    /// Adds every script of another run.
+    pub fn extend(&mut self, other: Self) {
+        self.0.extend(other.0);
+    }
+
     /// The text of a script.
     pub fn text(&self, file: &str) -> Option<&str> {
         self.0.get(file).map(|t| &**t)

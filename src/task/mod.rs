@@ -17,6 +17,7 @@ type Progress = dyn Fn(&str, f32) + Send + Sync;
 #[derive(Clone, Default)]
 pub struct Task {
     cancel: Arc<AtomicBool>,
+    parent: Option<Arc<Task>>,
     progress: Option<Arc<Progress>>,
 }
 
@@ -24,6 +25,12 @@ impl Task {
     /// A task that nobody listens to; [`Task::cancel`] still works.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// A part of this task: cancelled with it, but cancelling the part leaves the whole running.
+    #[must_use]
+    pub fn child(&self) -> Self {
+        Self { cancel: Arc::default(), parent: Some(Arc::new(self.clone())), progress: self.progress.clone() }
     }
 
     /// The same task, reporting progress to `listener` as (what is done, fraction 0..=1).
@@ -40,7 +47,7 @@ impl Task {
 
     /// True once [`Task::cancel`] was called.
     pub fn is_cancelled(&self) -> bool {
-        self.cancel.load(Ordering::Relaxed)
+        self.cancel.load(Ordering::Relaxed) || self.parent.as_ref().is_some_and(|p| p.is_cancelled())
     }
 
     /// To be called every few thousand steps of a loop.
@@ -97,5 +104,22 @@ impl<T> Warned<T> {
     /// A value without warnings.
     pub fn clean(value: T) -> Self {
         Self { value, warnings: Vec::new() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cancelling_goes_down_and_not_up() {
+        let whole = Task::new();
+        let (part, other) = (whole.child(), whole.child());
+        let deep = part.child();
+        part.cancel();
+        assert!(part.is_cancelled() && deep.is_cancelled());
+        assert!(!whole.is_cancelled() && !other.is_cancelled());
+        whole.cancel();
+        assert!(other.check().is_err());
     }
 }

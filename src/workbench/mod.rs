@@ -4,12 +4,16 @@
 //! and after an error the folder is as it was before.
 
 mod budget;
+pub mod diff;
 mod figures;
 mod keep;
 mod new;
 mod output;
 mod run;
+pub mod sheet;
 pub mod terminal;
+pub mod test;
+pub mod variations;
 pub mod watch;
 
 pub use budget::{Budget, keep_within};

@@ -52,7 +52,7 @@ pub fn new(folder: &Path) -> Result<Vec<PathBuf>, NewError> {
         .iter()
         .map(|(file, text)| (file.replace(PLACEHOLDER, &name), text.replace(PLACEHOLDER, &name)))
         .chain(api::definitions().into_iter().map(|d| (format!("{DEFINITIONS}/{}", d.name), d.text)))
-        .map(|(name, text)| Output { name, bytes: text.into_bytes() })
+        .map(|(name, text)| Output { name, bytes: text.into_bytes().into() })
         .collect();
     let failed = |error: io::Error| WriteError { path: folder.to_path_buf(), error };
     let parent = folder.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -71,7 +71,7 @@ pub fn new(folder: &Path) -> Result<Vec<PathBuf>, NewError> {
 /// [`WriteError`] with the file at fault.
 pub fn api(folder: &Path) -> Result<Vec<Written>, WriteError> {
     let documents = api::definitions().into_iter().chain(api::pages());
-    let outputs: Vec<Output> = documents.map(|d| Output { name: d.name, bytes: d.text.into_bytes() }).collect();
+    let outputs: Vec<Output> = documents.map(|d| Output { name: d.name, bytes: d.text.into_bytes().into() }).collect();
     write_all(folder, &outputs)
 }
 

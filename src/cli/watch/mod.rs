@@ -46,7 +46,7 @@ struct Shown {
 /// Watches until Ctrl-C.
 pub fn watch(arguments: &WatchArguments) -> u8 {
     let options = run_options(&arguments.run);
-    let pool = match barrier::pool(&arguments.run.script) {
+    let pool = match barrier::pool(arguments.run.script.threads) {
         Ok(pool) => pool,
         Err(code) => return code,
     };

@@ -11,6 +11,7 @@ use glam::Vec3;
 use super::super::call::{Call, Result};
 use super::super::files::AccessError;
 use super::super::registry::{Entry, Getter, Noun};
+use super::super::session::Session;
 use super::region::Area;
 use crate::geometry::OrientedBox;
 use crate::head::load::{self, Axis, FileBytes, LoadError, LoadOptions, Unit};
@@ -224,10 +225,22 @@ fn head(call: &Call) -> Result<Value> {
     Ok(Value::Handle(Handle::new(head)))
 }
 
+static ADULT: OnceLock<Arc<Head>> = OnceLock::new();
+static CARTOON: OnceLock<Arc<Head>> = OnceLock::new();
+
+/// Every head that a run can have used, once: those it made, and the mannequins.
+pub fn heads(session: &Session) -> Vec<Arc<Head>> {
+    let mut all: Vec<Arc<Head>> = vec![];
+    for head in session.heads.borrow().values().chain(ADULT.get()).chain(CARTOON.get()) {
+        if !all.iter().any(|known| Arc::ptr_eq(known, head)) {
+            all.push(Arc::clone(head));
+        }
+    }
+    all
+}
+
 /// A mannequin; made once per process, for it depends on nothing.
 fn built_in(call: &Call, style: Style) -> Result<Arc<Head>> {
-    static ADULT: OnceLock<Arc<Head>> = OnceLock::new();
-    static CARTOON: OnceLock<Arc<Head>> = OnceLock::new();
     let made = match style {
         Style::Adult => &ADULT,
         Style::Cartoon => &CARTOON,

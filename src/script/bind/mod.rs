@@ -5,6 +5,7 @@
 
 mod constants;
 mod domain;
+mod golden;
 mod guides;
 mod head;
 mod material;
@@ -15,13 +16,15 @@ mod piece;
 mod region;
 mod scene;
 mod strands;
+mod test;
+mod tested;
 mod tuft;
 
 use mlua::Lua;
 
 use super::call::invoke;
 use super::convert::to_lua;
-use super::registry::{Constant, Registry, registry as language};
+use super::registry::{Constant, Entry, Registry, registry as language};
 use super::session::session;
 use super::strict;
 use crate::params::{Table, Value};
@@ -45,10 +48,12 @@ pub fn registry() -> Registry {
         vec![region::noun(), guides::noun(), strands::noun()],
         domain::nouns(),
         tuft::nouns(),
-        vec![piece::noun(), material::noun(), scene::noun()],
+        vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
+        tested::nouns(),
     ];
     Registry {
         functions: functions.into_iter().flatten().collect(),
+        test_functions: test::functions(),
         nouns: nouns.into_iter().flatten().collect(),
         constants: constants::constants(),
     }
@@ -71,6 +76,18 @@ fn list(items: impl IntoIterator<Item = Value>) -> Value {
 /// # Errors
 /// When Lua has no memory left.
 pub fn install(lua: &Lua) -> mlua::Result<()> {
+    install_all(lua, &[])
+}
+
+/// The same with what only tests may call.
+///
+/// # Errors
+/// When Lua has no memory left.
+pub fn install_for_tests(lua: &Lua) -> mlua::Result<()> {
+    install_all(lua, &language().test_functions)
+}
+
+fn install_all(lua: &Lua, more: &'static [Entry]) -> mlua::Result<()> {
     let root = lua.create_table()?;
     let mut folders: Vec<(String, mlua::Table)> = vec![("coif".into(), root.clone())];
     let mut put = |name: &str, value: mlua::Value| -> mlua::Result<()> {
@@ -92,7 +109,7 @@ pub fn install(lua: &Lua) -> mlua::Result<()> {
         }
         folder.raw_set(*last, value)
     };
-    for entry in &language().functions {
+    for entry in language().functions.iter().chain(more) {
         let function =
             lua.create_function(move |lua, args: mlua::MultiValue| invoke(lua, &*session(lua)?, entry, args))?;
         put(entry.name, mlua::Value::Function(function))?;

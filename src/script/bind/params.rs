@@ -28,6 +28,31 @@ pub struct Parameter {
     pub choices: Vec<String>,
 }
 
+impl Parameter {
+    /// The value that a text from outside stands for, as `--set` takes it.
+    ///
+    /// # Errors
+    /// Why the parameter does not take it.
+    pub fn given(&self, text: &str) -> std::result::Result<Value, Problem> {
+        let value = match self.kind {
+            ParameterKind::Number | ParameterKind::Integer => text.trim().parse().ok().map(Value::Number),
+            ParameterKind::Boolean => text.trim().parse().ok().map(Value::Bool),
+            ParameterKind::Text | ParameterKind::Choice | ParameterKind::Colour => Some(Value::Text(text.to_owned())),
+            ParameterKind::Point => {
+                let numbers = text.split(',').filter_map(|n| n.trim().parse().ok());
+                let items: Vec<Value> = numbers.map(Value::Number).collect();
+                Some(Value::Table(Table { items, ..Table::default() }))
+            }
+        };
+        let value = value.ok_or_else(|| Problem {
+            path: String::new(),
+            message: format!("`{text}` is not a {}", self.kind.text()),
+            hint: Some(format!("as in `--set {}={}`", self.name, self.default)),
+        })?;
+        check(self, &value)
+    }
+}
+
 crate::choices! {
     /// What a parameter takes.
     pub enum ParameterKind {
@@ -159,25 +184,11 @@ fn parameter(name: &str, value: &Value) -> std::result::Result<Parameter, Vec<Pr
 /// Takes over what the command line says.
 fn set(parameter: Parameter, text: Option<&String>) -> std::result::Result<Parameter, Vec<Problem>> {
     let Some(text) = text else { return Ok(parameter) };
-    let value = match parameter.kind {
-        ParameterKind::Number | ParameterKind::Integer => text.trim().parse().ok().map(Value::Number),
-        ParameterKind::Boolean => text.trim().parse().ok().map(Value::Bool),
-        ParameterKind::Text | ParameterKind::Choice | ParameterKind::Colour => Some(Value::Text(text.clone())),
-        ParameterKind::Point => {
-            let items: Vec<Value> = text.split(',').filter_map(|n| n.trim().parse().ok()).map(Value::Number).collect();
-            Some(Value::Table(Table { items, ..Table::default() }))
-        }
-    };
     let name = parameter.name.clone();
     let from_outside = |p: Problem| {
         vec![Problem { path: name.clone(), message: format!("`--set {name}={text}`: {}", p.message), hint: p.hint }]
     };
-    let value = value.ok_or_else(|| Problem {
-        path: String::new(),
-        message: format!("`{text}` is not a {}", parameter.kind.text()),
-        hint: Some(format!("as in `--set {name}={}`", parameter.default)),
-    });
-    let value = value.and_then(|v| check(&parameter, &v)).map_err(from_outside)?;
+    let value = parameter.given(text).map_err(from_outside)?;
     Ok(Parameter { value, ..parameter })
 }
 
