@@ -57,6 +57,7 @@ fn main() {
         tolerance: 0.05,
         guides: false,
         count_inside: false,
+        triangles: None,
     };
     println!(
         "{strands} strands, 3 views of {SIZE} x {SIZE}, {supersample} x {supersample} samples, {rounds} rounds, {} threads",
