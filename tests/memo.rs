@@ -199,6 +199,7 @@ fn workbench(text: &str, memo: &Arc<Memo>) -> (Report, Vec<Vec<u8>>) {
         tolerance: 0.05,
         guides: true,
         count_inside: false,
+        triangles: None,
     };
     let report = workbench::run(&options, Arc::new(Memory::default().with("style/a.lua", text)), &Task::new());
     let files = report.written.as_ref().unwrap().iter().map(|w| std::fs::read(&w.path).unwrap()).collect();

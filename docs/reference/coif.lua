@@ -404,7 +404,6 @@ function coif.scene(fields) end
 ---Declares a test; it is run by `coif test`, in a fresh state of its own.
 ---@param name string # What it shows, in a few words; unique within the file.
 ---@param body fun(t: coif.Test) # Takes the Test, `t`, whose methods run styles and state what is expected.
----@return nil
 function coif.test(name, body) end
 
 ---A head in head space: its origin lies between the ears, x points to its left, y up, z to the front, in cm.
@@ -679,8 +678,8 @@ function Test:scene(scene) end
 function Test:equal(got, want) end
 
 ---Expects two numbers, or two vectors, to be no farther apart than the tolerance.
----@param got number|coif.Point # What there is.
----@param want number|coif.Point # What there should be.
+---@param got any # What there is.
+---@param want any # What there should be.
 ---@param tolerance number # How far apart they may be. [0 or more]
 ---@return boolean
 function Test:near(got, want, tolerance) end
@@ -717,7 +716,7 @@ function Test:ok(value, message) end
 function Test:require(value, message) end
 
 ---Expects a function to raise an error.
----@param body fun(): any # Called without arguments.
+---@param body fun(): any? # Called without arguments.
 ---@param text? string # What the error must say, as a part of its message.
 ---@return boolean
 function Test:error(body, text) end
@@ -740,7 +739,7 @@ function Test:preview(scene, name, options) end
 ---when its scene is first asked for.
 ---@class coif.TestScene
 ---@field [string] coif.TestPart
----@operator call(table<string, any>): coif.TestScene
+---@overload fun(parameters: table<string, any>): coif.TestScene
 local TestScene = {}
 
 ---The same style with these parameters; `scene { length = 60 }` is short for it.

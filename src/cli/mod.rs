@@ -75,6 +75,7 @@ fn run_options(arguments: &RunArguments) -> RunOptions {
         tolerance: arguments.tolerance,
         guides: arguments.guides && arguments.strands != StrandForm::None,
         count_inside: arguments.stats,
+        triangles: arguments.triangles.map(|n| n as usize),
     }
 }
 
@@ -112,7 +113,7 @@ fn command_run(arguments: &RunArguments) -> u8 {
             say(&format!("error: {error}\n"));
             WRITE
         }
-        Err(error @ (RunError::Render(_) | RunError::Png(_) | RunError::Export(_))) => {
+        Err(error @ (RunError::Render(_) | RunError::Png(_) | RunError::Export(_) | RunError::Budget(_))) => {
             say(&format!("error: {error}; nothing was written\n"));
             SCRIPT
         }

@@ -24,7 +24,26 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
                 part.mean_length,
                 part.longest,
             ),
+            triangles if part.tufts > 0 => writeln!(
+                out,
+                "{name:>8}  {} tufts, {} triangles; {:.1} cm long on average, {:.1} cm at most",
+                thousands(part.tufts),
+                thousands(triangles),
+                part.mean_length,
+                part.longest,
+            ),
             triangles => writeln!(out, "{name:>8}  {} triangles", thousands(triangles)),
+        };
+    }
+    if let Some(budget) = &report.budget {
+        let (before, after) = (thousands(budget.before), thousands(budget.after));
+        let _ = match budget.tolerance {
+            Some(tolerance) => writeln!(
+                out,
+                "{:>8}  {before} triangles became {after}: {} of {} tufts, by {tolerance:.3} cm at most",
+                "budget", budget.lowered, budget.tufts
+            ),
+            None => writeln!(out, "{:>8}  {before} triangles are within it", "budget"),
         };
     }
     let stage = |s: &Stage| match s.origin {
@@ -75,6 +94,9 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "ms": stages,
         "calls": calls,
         "files": files,
+        "budget": report.budget.map(|b| json!({
+            "before": b.before, "after": b.after, "lowered": b.lowered, "tufts": b.tufts, "tolerance_cm": b.tolerance,
+        })),
         "warnings": report.outcome.diagnostics.len(),
     });
     format!("{object}\n")

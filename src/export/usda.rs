@@ -6,6 +6,7 @@
 
 mod text;
 
+use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::geometry::{Bounds, Mesh, Strands};
@@ -61,8 +62,17 @@ pub fn usda(scene: &Scene, options: &UsdaOptions, task: &Task) -> Result<Vec<u8>
         match &part.body {
             Body::Mesh(mesh, look) => {
                 mesh.validate().map_err(|error| ExportError::Mesh { part: part.name.clone(), error })?;
-                out.mesh(&name, part, &with_normals(mesh), &binding, task)?;
+                out.mesh(&name, part, &with_normals(mesh), None, &binding, task)?;
                 materials.push((name, surface(look)));
+            }
+            Body::Locks(locks) => {
+                let mesh = &locks.mesh.mesh;
+                mesh.validate().map_err(|error| ExportError::Mesh { part: part.name.clone(), error })?;
+                let colour = |v: usize| locks.look(locks.mesh.tuft[v] as usize).along(locks.place(v).y);
+                let colours: Vec<Vec3> = (0..mesh.positions.len()).map(colour).collect();
+                out.mesh(&name, part, &with_normals(mesh), Some(&colours), &binding, task)?;
+                let first = locks.look(0);
+                materials.push((name, surface(&MeshMaterial { colour: first.colour, roughness: first.roughness })));
             }
             Body::Hair(hair) => {
                 check_hair(part, hair)?;
@@ -183,7 +193,15 @@ impl Writer {
         self.line(2, binding)
     }
 
-    fn mesh(&mut self, name: &str, part: &Part, mesh: &Mesh, binding: &str, task: &Task) -> Result<(), ExportError> {
+    fn mesh(
+        &mut self,
+        name: &str,
+        part: &Part,
+        mesh: &Mesh,
+        colours: Option<&[Vec3]>,
+        binding: &str,
+        task: &Task,
+    ) -> Result<(), ExportError> {
         self.head("Mesh", name, part, mesh.bounds(), binding)?;
         self.line(2, "uniform token subdivisionScheme = \"none\"")?;
         let number = |out: &mut Vec<u8>, n: &u32| out.extend_from_slice(n.to_string().as_bytes());
@@ -194,6 +212,9 @@ impl Writer {
         self.array("int[] faceVertexIndices", &mesh.triangles, triangle, "", task)?;
         self.array("point3f[] points", &mesh.positions, |o, p| tuple(o, &p.to_array()), "", task)?;
         self.array("normal3f[] normals", &mesh.normals, |o, n| tuple(o, &n.to_array()), VERTEX, task)?;
+        if let Some(colours) = colours {
+            self.array("color3f[] primvars:displayColor", colours, |o, c| tuple(o, &c.to_array()), VERTEX, task)?;
+        }
         if !mesh.uvs.is_empty() {
             self.array("texCoord2f[] primvars:st", &mesh.uvs, |o, uv| tuple(o, &uv.to_array()), VERTEX, task)?;
         }

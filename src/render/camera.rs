@@ -116,6 +116,7 @@ pub fn frame(scene: &Scene, views: &[Mat3]) -> Framing {
                     points.push(Vec3::new(0.0, low.max(floor), 0.0));
                 }
             }
+            Body::Locks(locks) => points.extend(locks.mesh.mesh.positions.iter().filter(|p| p.is_finite())),
             Body::Hair(hair) => {
                 let shown = if scene.look.debug { &hair.guides } else { &hair.strands };
                 points.extend(shown.points.iter().filter(|p| p.is_finite()));

@@ -1,7 +1,7 @@
 //! Pictures of a scene: orthographic views on one sheet.
 //!
 //! [`sheet()`] does everything; it sees only a [`Scene`](crate::scene::Scene). The way of the data: [`camera`] frames the
-//! views; [`shadow`] finds how much light reaches each place; [`surface`] draws the head; [`strands`] projects and
+//! views; [`shadow`] finds how much light reaches each place; [`surface`] draws the head, [`toon`] draws it in flat tones with ink lines; [`strands`] projects and
 //! simplifies the hair, [`raster`] lays it down front to back, [`shade`] gives it colour; [`overlay`] makes the debug
 //! view; [`lettering`] writes; [`png`] codes. [`contact`] lays pictures out, [`compare`] tells how far two differ.
 
@@ -18,6 +18,7 @@ pub mod shadow;
 pub mod sheet;
 pub mod strands;
 pub mod surface;
+pub mod toon;
 
 #[cfg(test)]
 mod tests;

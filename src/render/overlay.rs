@@ -100,6 +100,22 @@ pub fn draw(scene: &Scene, camera: &Camera, pen: f32) -> Drawing {
             }
         }
     }
+    for (_, locks) in scene.locks() {
+        for (i, tuft) in locks.tufts.tufts.iter().enumerate() {
+            let colour = locks.look(i).colour;
+            let along = |b: [Vec3; 4]| {
+                (0..=12).map(move |k| {
+                    let u = k as f32 / 12.0;
+                    let (ab, bc, cd) = (b[0].lerp(b[1], u), b[1].lerp(b[2], u), b[2].lerp(b[3], u));
+                    ab.lerp(bc, u).lerp(bc.lerp(cd, u), u)
+                })
+            };
+            thin.line(tuft.stroke.beziers().into_iter().flat_map(along), colour);
+            for &p in tuft.stroke.points() {
+                dot(p, 3.0 * pen, colour, camera, &mut dots);
+            }
+        }
+    }
     Drawing { wires: vec![guides, thin, bold, dots], labels }
 }
 

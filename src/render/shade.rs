@@ -237,4 +237,15 @@ impl Skin {
             gloss: 0.25 + 2.0 * smooth * smooth,
         }
     }
+
+    /// Its linear colour.
+    pub fn albedo(&self) -> Vec3 {
+        self.albedo
+    }
+
+    /// The same with another linear colour.
+    #[must_use]
+    pub fn tinted(self, albedo: Vec3) -> Self {
+        Self { albedo, ..self }
+    }
 }

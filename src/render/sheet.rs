@@ -5,7 +5,7 @@ use tiny_skia::{Paint, Pixmap, Rect, Transform};
 
 use crate::geometry::{Mesh, Strands};
 use crate::math::Colour;
-use crate::scene::{Background, Body, Scene, View};
+use crate::scene::{Background, Body, MeshMaterial, Scene, Shading, View};
 use crate::task::{Cancelled, Task};
 
 use super::camera::{Camera, Framing, axes, frame};
@@ -16,6 +16,7 @@ use super::shade::{Coat, Skin, Sky, Studio};
 use super::shadow::{Density, density};
 use super::strands::{Bundle, Ink};
 use super::surface::{self, Shell};
+use super::toon::Toon;
 
 /// An opaque picture, sRGB.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -251,9 +252,11 @@ pub(super) fn paste(picture: &mut Picture, view: &[u8], (x, y): (u32, u32), widt
 
 /// What all views of a scene share.
 struct Stage {
-    meshes: Vec<(Mesh, Skin)>,
+    meshes: Vec<(Mesh, Skin, Option<Vec<Vec3>>)>,
     density: Density,
     sky: Sky,
+    /// Instead of light and shadow.
+    toon: Option<Toon>,
 }
 
 impl Stage {
@@ -266,24 +269,38 @@ impl Stage {
                 if mesh.normals.len() != mesh.positions.len() {
                     mesh.compute_normals();
                 }
-                meshes.push((mesh, Skin::new(material)));
+                meshes.push((mesh, Skin::new(material), None));
             }
+            if let (Body::Locks(locks), false) = (&part.body, scene.look.debug) {
+                let roughness = locks.look(0).roughness;
+                let tints = (0..locks.mesh.mesh.positions.len())
+                    .map(|v| locks.look(locks.mesh.tuft[v] as usize).along(locks.place(v).y))
+                    .collect();
+                let skin = Skin::new(&MeshMaterial { roughness, ..MeshMaterial::default() });
+                meshes.push((locks.mesh.mesh.clone(), skin, Some(tints)));
+            }
+        }
+        // Flat tones need neither shadows in hair nor a sky.
+        if scene.look.shading == Shading::Toon && !scene.look.debug {
+            let density = density(&[], &[], task)?;
+            let sky = Sky::new(&density, task)?;
+            return Ok(Self { meshes: vec![], density, sky, toon: Some(Toon::new(scene)) });
         }
         let hair: Vec<(&Strands, f32, f32)> = scene
             .hair()
             .filter(|_| !scene.look.debug)
             .map(|(_, h)| (&*h.strands, h.material.width, h.material.width * h.material.taper))
             .collect();
-        let shapes: Vec<&Mesh> = meshes.iter().map(|(m, _)| m).collect();
+        let shapes: Vec<&Mesh> = meshes.iter().map(|(m, ..)| m).collect();
         let density = density(&hair, &shapes, task)?;
         let sky = Sky::new(&density, task)?;
-        Ok(Self { meshes, density, sky })
+        Ok(Self { meshes, density, sky, toon: None })
     }
 
     /// One view: its bytes, and words for the lettering.
-    fn view(
-        &self,
-        scene: &Scene,
+    fn view<'a>(
+        &'a self,
+        scene: &'a Scene,
         camera: &Camera,
         options: &SheetOptions,
         paper: Colour,
@@ -291,19 +308,32 @@ impl Stage {
     ) -> Result<(Vec<u8>, Vec<Label>), Cancelled> {
         let ss = options.supersample as usize;
         let fine = camera.enlarged(ss);
-        let meshes: Vec<&Mesh> = self.meshes.iter().map(|(mesh, _)| mesh).collect();
+        let meshes: Vec<&Mesh> = self.meshes.iter().map(|(mesh, ..)| mesh).collect();
         task.progress("light", 0.0);
         let studio = Studio::new(&fine, &self.density, &meshes, &self.sky);
         task.check()?;
-        let shells: Vec<Shell> = self.meshes.iter().map(|(mesh, skin)| Shell { mesh, skin: *skin }).collect();
+        let shell = |(mesh, skin, tints): &'a (Mesh, Skin, Option<Vec<Vec3>>)| {
+            Shell { mesh, skin: *skin, tints: tints.as_deref() }
+        };
+        let shells: Vec<Shell> = self.meshes.iter().map(shell).collect();
         task.progress("head", 0.2);
-        let layer = surface::draw(&shells, &fine, &studio, task)?;
+        let layer = match &self.toon {
+            Some(toon) => toon.draw(&fine, ss, task)?,
+            None => surface::draw(&shells, &fine, &studio, task)?,
+        };
         let pen = (options.width as f32 / 520.0).clamp(0.7, 2.5);
         let drawing = scene.look.debug.then(|| overlay::draw(scene, camera, pen));
-        let bundles: Vec<Bundle> = match &drawing {
+        let mut bundles: Vec<Bundle> = match &drawing {
             Some(drawing) => drawing.wires.iter().map(|w| w.bundle(ss as f32)).collect(),
             None => scene.hair().map(|(_, hair)| bundle(hair, fine.scale)).collect(),
         };
+        let flat: Vec<Vec<Vec3>> = match &self.toon {
+            Some(toon) => scene.hair().map(|(_, hair)| toon.strands(hair, &fine)).collect(),
+            None => vec![],
+        };
+        for (bundle, colours) in bundles.iter_mut().zip(&flat) {
+            bundle.ink = Ink::Flat(colours);
+        }
         let canvas = Canvas {
             camera: &fine,
             supersample: ss,
@@ -438,10 +468,20 @@ fn figures(scene: &Scene) -> String {
         }
     }
     let what = if scene.look.debug { "guides" } else { "strands" };
-    if count == 0 {
-        return format!("no {what}");
+    let mut words = Vec::new();
+    let (mut tufts, mut triangles) = (0, 0);
+    for (_, locks) in scene.locks() {
+        tufts += locks.tufts.count();
+        triangles += locks.mesh.mesh.triangles.len();
     }
-    format!("{} {what} · mean {:.1} cm · longest {longest:.1} cm", grouped(count), total / count as f64)
+    if triangles > 0 {
+        words.push(format!("{} tufts · {} triangles", grouped(tufts), grouped(triangles)));
+    }
+    if count > 0 {
+        let mean = total / count as f64;
+        words.push(format!("{} {what} · mean {mean:.1} cm · longest {longest:.1} cm", grouped(count)));
+    }
+    if words.is_empty() { format!("no {what}") } else { words.join(" · ") }
 }
 
 /// A number with a thin mark between thousands.

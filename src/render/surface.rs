@@ -10,9 +10,9 @@ use super::camera::Camera;
 use super::shade::{Skin, Studio};
 
 /// Rows of pixels that one task draws.
-const BAND: usize = 16;
+pub(super) const BAND: usize = 16;
 /// Rotated grid of samples within a pixel.
-const SAMPLES: [Vec2; 4] =
+pub(super) const SAMPLES: [Vec2; 4] =
     [Vec2::new(0.375, 0.125), Vec2::new(0.875, 0.375), Vec2::new(0.125, 0.625), Vec2::new(0.625, 0.875)];
 
 /// A surface and its material, ready to be drawn.
@@ -22,6 +22,8 @@ pub struct Shell<'a> {
     pub mesh: &'a Mesh,
     /// How it looks.
     pub skin: Skin,
+    /// Linear colours per vertex instead of the skin's own.
+    pub tints: Option<&'a [Vec3]>,
 }
 
 /// The surfaces of a view: one layer that strands pass in front of or behind.
@@ -38,25 +40,35 @@ pub struct Layer {
 }
 
 /// A triangle in the picture.
-struct Face {
-    corners: [Vec3; 3],
-    shell: u32,
-    triangle: u32,
+pub(super) struct Face {
+    /// In pixels, with depth.
+    pub corners: [Vec3; 3],
+    /// Index of its mesh.
+    pub shell: u32,
+    /// Index within the mesh.
+    pub triangle: u32,
 }
 
-/// Draws all `shells`.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn draw(shells: &[Shell], camera: &Camera, studio: &Studio, task: &Task) -> Result<Layer, Cancelled> {
+/// All triangles that can be seen, and those of each band of rows.
+pub(super) struct Faces {
+    /// In the order of the meshes.
+    pub faces: Vec<Face>,
+    /// Per band of [`BAND`] rows: indices into `faces`.
+    pub of_band: Vec<Vec<u32>>,
+}
+
+/// Projects the triangles of all `meshes`.
+pub(super) fn faces<'a>(
+    meshes: impl Iterator<Item = &'a Mesh>,
+    camera: &Camera,
+    task: &Task,
+) -> Result<Faces, Cancelled> {
     let (width, height) = (camera.width, camera.height);
-    let bands = height.div_ceil(BAND);
-    let mut faces = Vec::new();
-    let mut of_band: Vec<Vec<u32>> = vec![Vec::new(); bands];
-    for (shell, s) in shells.iter().enumerate() {
+    let mut all = Faces { faces: Vec::new(), of_band: vec![Vec::new(); height.div_ceil(BAND)] };
+    for (shell, mesh) in meshes.enumerate() {
         task.check()?;
-        let projected: Vec<Vec3> = s.mesh.positions.iter().map(|&p| camera.project(p)).collect();
-        for (triangle, t) in s.mesh.triangles.iter().enumerate() {
+        let projected: Vec<Vec3> = mesh.positions.iter().map(|&p| camera.project(p)).collect();
+        for (triangle, t) in mesh.triangles.iter().enumerate() {
             let corners = t.map(|v| projected[v as usize]);
             let lo = corners[0].min(corners[1]).min(corners[2]);
             let hi = corners[0].max(corners[1]).max(corners[2]);
@@ -65,52 +77,23 @@ pub fn draw(shells: &[Shell], camera: &Camera, studio: &Studio, task: &Task) -> 
                 continue;
             }
             let (first, last) = (lo.y.max(0.0) as usize / BAND, hi.y.min(height as f32 - 1.0) as usize / BAND);
-            for band in &mut of_band[first..=last] {
-                band.push(faces.len() as u32);
+            for band in &mut all.of_band[first..=last] {
+                band.push(all.faces.len() as u32);
             }
-            faces.push(Face { corners, shell: shell as u32, triangle: triangle as u32 });
+            all.faces.push(Face { corners, shell: shell as u32, triangle: triangle as u32 });
         }
     }
-    let drawn: Result<Vec<Layer>, Cancelled> = of_band
-        .par_iter()
-        .enumerate()
-        .map(|(band, list)| {
-            task.check()?;
-            let top = band * BAND;
-            Ok(draw_band(shells, &faces, list, camera, studio, top, BAND.min(height - top)))
-        })
-        .collect();
-    let mut layer = Layer { width, depth: Vec::new(), cover: Vec::new(), colour: Vec::new() };
-    for band in drawn? {
-        layer.depth.extend(band.depth);
-        layer.cover.extend(band.cover);
-        layer.colour.extend(band.colour);
-    }
-    Ok(layer)
+    Ok(all)
 }
 
-/// Barycentric weights of `p` in the triangle; all at least 0 inside.
-fn weights(c: &[Vec3; 3], p: Vec2) -> Option<[f32; 3]> {
-    let edge = |a: Vec3, b: Vec3| (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
-    let w = [edge(c[1], c[2]), edge(c[2], c[0]), edge(c[0], c[1])];
-    let area = w[0] + w[1] + w[2];
-    if area.abs() < 1e-12 {
-        return None;
-    }
-    let w = w.map(|w| w / area);
-    (w[0] >= 0.0 && w[1] >= 0.0 && w[2] >= 0.0).then_some(w)
-}
-
-fn draw_band(
-    shells: &[Shell],
+/// What is nearest in each sample of `rows` rows from `top` on, [`SAMPLES`] per pixel: depths and indices into `faces`.
+pub(super) fn nearest(
     faces: &[Face],
     list: &[u32],
-    camera: &Camera,
-    studio: &Studio,
+    width: usize,
     top: usize,
     rows: usize,
-) -> Layer {
-    let width = camera.width;
+) -> (Vec<f32>, Vec<u32>) {
     let n = SAMPLES.len();
     let mut depth = vec![f32::NEG_INFINITY; width * rows * n];
     let mut owner = vec![u32::MAX; width * rows * n];
@@ -135,6 +118,58 @@ fn draw_band(
             }
         }
     }
+    (depth, owner)
+}
+
+/// Draws all `shells`.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn draw(shells: &[Shell], camera: &Camera, studio: &Studio, task: &Task) -> Result<Layer, Cancelled> {
+    let (width, height) = (camera.width, camera.height);
+    let Faces { faces, of_band } = faces(shells.iter().map(|s| s.mesh), camera, task)?;
+    let drawn: Result<Vec<Layer>, Cancelled> = of_band
+        .par_iter()
+        .enumerate()
+        .map(|(band, list)| {
+            task.check()?;
+            let top = band * BAND;
+            Ok(draw_band(shells, &faces, list, camera, studio, top, BAND.min(height - top)))
+        })
+        .collect();
+    let mut layer = Layer { width, depth: Vec::new(), cover: Vec::new(), colour: Vec::new() };
+    for band in drawn? {
+        layer.depth.extend(band.depth);
+        layer.cover.extend(band.cover);
+        layer.colour.extend(band.colour);
+    }
+    Ok(layer)
+}
+
+/// Barycentric weights of `p` in the triangle; all at least 0 inside.
+pub(super) fn weights(c: &[Vec3; 3], p: Vec2) -> Option<[f32; 3]> {
+    let edge = |a: Vec3, b: Vec3| (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+    let w = [edge(c[1], c[2]), edge(c[2], c[0]), edge(c[0], c[1])];
+    let area = w[0] + w[1] + w[2];
+    if area.abs() < 1e-12 {
+        return None;
+    }
+    let w = w.map(|w| w / area);
+    (w[0] >= 0.0 && w[1] >= 0.0 && w[2] >= 0.0).then_some(w)
+}
+
+fn draw_band(
+    shells: &[Shell],
+    faces: &[Face],
+    list: &[u32],
+    camera: &Camera,
+    studio: &Studio,
+    top: usize,
+    rows: usize,
+) -> Layer {
+    let width = camera.width;
+    let n = SAMPLES.len();
+    let (depth, owner) = nearest(faces, list, width, top, rows);
     let mut layer = Layer {
         width,
         depth: vec![f32::NEG_INFINITY; width * rows],
@@ -144,7 +179,7 @@ fn draw_band(
     for i in 0..width * rows {
         let pixel = Vec2::new((i % width) as f32, (top + i / width) as f32);
         let (mut hits, mut z, mut point, mut normal) = (0.0, 0.0, Vec3::ZERO, Vec3::ZERO);
-        let mut skin = None;
+        let (mut skin, mut tint) = (None, Vec3::ZERO);
         for (s, offset) in SAMPLES.iter().enumerate() {
             let Some(face) = faces.get(owner[i * n + s] as usize) else { continue };
             let Some(w) = weights(&face.corners, pixel + *offset) else { continue };
@@ -156,13 +191,14 @@ fn draw_band(
             point += mix(&shell.mesh.positions);
             let facing = mix(&shell.mesh.normals);
             normal += if facing.dot(camera.toward) < -0.25 { -facing } else { facing };
+            tint += shell.tints.map_or_else(|| shell.skin.albedo(), |tints| mix(tints));
             skin = Some(shell.skin);
         }
         if let Some(skin) = skin {
             layer.depth[i] = z / hits;
             layer.cover[i] = hits / n as f32;
             let n = normal.try_normalize().unwrap_or(camera.toward);
-            layer.colour[i] = studio.surface(&skin, point / hits, n);
+            layer.colour[i] = studio.surface(&skin.tinted(tint / hits), point / hits, n);
         }
     }
     layer

@@ -32,18 +32,30 @@ crate::choices! {
     }
 }
 
+crate::choices! {
+    /// How surfaces and light are drawn.
+    pub enum Shading {
+        /// As in a photograph: lamps, shadows, soft skin.
+        Soft = "soft",
+        /// As in a cartoon: flat tones, a band of light, ink lines.
+        Toon = "toon",
+    }
+}
+
 /// How the preview is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// The colour behind everything.
     pub background: Background,
+    /// How surfaces and light are drawn.
+    pub shading: Shading,
     /// Draw domains, guides, partings and roots instead of the hair.
     pub debug: bool,
 }
 
 impl Default for Look {
     fn default() -> Self {
-        Self { background: Background::White, debug: false }
+        Self { background: Background::White, shading: Shading::Soft, debug: false }
     }
 }
 
@@ -86,5 +98,43 @@ crate::params! {
 impl Default for HairMaterial {
     fn default() -> Self {
         crate::params::read::<Self>(&crate::params::Table::default()).expect("every field has a default")
+    }
+}
+
+crate::params! {
+    /// How stylised hair looks: its colours and its band of light.
+    #[derive(PartialEq)]
+    pub struct TuftMaterial("coif.material.tuft") {
+        /// Colour in the light.
+        colour: Colour = Colour::hex(0x6b_43_2b);
+        /// Colour towards the tip; `colour` when left out.
+        tip_colour: Option<Colour>;
+        /// Colour in the shade, of toon shading; a darker `colour` when left out.
+        shade: Option<Colour>;
+        /// Colour of the band of light, of toon shading; a lighter `colour` when left out.
+        light: Option<Colour>;
+        /// Colour of the outline, of toon shading; a very dark `colour` when left out.
+        ink: Option<Colour>;
+        /// Width and strength of the light: 0 none, 1 much.
+        shine: f32 = 0.5, range(0.0, 1.0);
+        /// 0 mirror to 1 chalk, of soft shading and exported files.
+        roughness: f32 = 0.5, range(0.0, 1.0);
+    }
+}
+
+impl Default for TuftMaterial {
+    fn default() -> Self {
+        crate::params::read::<Self>(&crate::params::Table::default()).expect("every field has a default")
+    }
+}
+
+impl TuftMaterial {
+    /// The linear colour at a place along a lock: 0 root, 1 tip.
+    pub fn along(&self, t: f32) -> glam::Vec3 {
+        let root = self.colour.to_linear();
+        match self.tip_colour {
+            Some(tip) => root.lerp(tip.to_linear(), crate::math::trig::smoothstep(0.25, 0.95, t)),
+            None => root,
+        }
     }
 }

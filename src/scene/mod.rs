@@ -2,6 +2,7 @@
 //!
 //! A script ends by returning a scene. Renderers and exporters see only this: no script, no defaults left to fill in.
 
+mod locks;
 mod look;
 mod overlay;
 
@@ -11,7 +12,8 @@ use glam::Affine3A;
 
 use crate::geometry::{Bounds, Mesh, Strands};
 
-pub use look::{Background, HairMaterial, Look, MeshMaterial, View};
+pub use locks::{LockKind, Locks};
+pub use look::{Background, HairMaterial, Look, MeshMaterial, Shading, TuftMaterial, View};
 pub use overlay::{Arrow, Line, Marker, Overlay, WireBox, WireSphere};
 
 /// A finished hairstyle.
@@ -47,6 +49,8 @@ pub enum Body {
     Mesh(Arc<Mesh>, MeshMaterial),
     /// Strands of hair.
     Hair(Hair),
+    /// Stylised hair: closed surfaces.
+    Locks(Locks),
 }
 
 /// Strands with what belongs to them.
@@ -69,6 +73,7 @@ impl Scene {
             b.union(match &part.body {
                 Body::Mesh(mesh, _) => mesh.bounds(),
                 Body::Hair(hair) => hair.strands.bounds(),
+                Body::Locks(locks) => locks.mesh.mesh.bounds(),
             })
         })
     }
@@ -77,7 +82,15 @@ impl Scene {
     pub fn hair(&self) -> impl Iterator<Item = (&Part, &Hair)> {
         self.parts.iter().filter_map(|part| match &part.body {
             Body::Hair(hair) => Some((part, hair)),
-            Body::Mesh(..) => None,
+            Body::Mesh(..) | Body::Locks(_) => None,
+        })
+    }
+
+    /// Every part that is stylised hair.
+    pub fn locks(&self) -> impl Iterator<Item = (&Part, &Locks)> {
+        self.parts.iter().filter_map(|part| match &part.body {
+            Body::Locks(locks) => Some((part, locks)),
+            Body::Mesh(..) | Body::Hair(_) => None,
         })
     }
 }

@@ -148,14 +148,20 @@ impl Call<'_> {
     /// # Errors
     /// Every problem found in them.
     pub fn read_both<A: Params, B: Params>(&self) -> Result<(A, B)> {
+        self.read_both_from(&self.table)
+    }
+
+    /// A table that was made from the arguments, as two parameter structs.
+    ///
+    /// # Errors
+    /// Every problem found in it.
+    pub fn read_both_from<A: Params, B: Params>(&self, table: &Table) -> Result<(A, B)> {
         let fields: Vec<_> = A::fields().into_iter().chain(B::fields()).collect();
         let mut reader = Reader::default();
-        reader.reject_unknown(&self.table, &fields, self.entry.name);
+        reader.reject_unknown(table, &fields, self.entry.name);
         let part = |own: Vec<params::Field>| Table {
-            items: if own.iter().any(|f| f.is_positional) { self.table.items.clone() } else { vec![] },
-            fields: own
-                .iter()
-                .filter_map(|f| Some((f.name.to_owned(), self.table.fields.get(f.name)?.clone())))
+            items: if own.iter().any(|f| f.is_positional) { table.items.clone() } else { vec![] },
+            fields: own.iter().filter_map(|f| Some((f.name.to_owned(), table.fields.get(f.name)?.clone())))
                 .collect(),
         };
         let both = (A::read(&part(A::fields()), &mut reader), B::read(&part(B::fields()), &mut reader));
@@ -193,6 +199,11 @@ impl Call<'_> {
     /// An error of the method, about the call.
     pub fn groom(&self, error: &GroomError) -> Raised {
         self.problem(error.to_string(), error.hint())
+    }
+
+    /// True when the function has a field of that name.
+    pub fn has_field(&self, name: &str) -> bool {
+        (self.entry.fields)().iter().any(|f| f.name == name)
     }
 
     /// The arguments as they came.

@@ -14,8 +14,8 @@ use crate::task::{Warned, Warning};
 crate::params! {
     /// A cap of hair that lies on the scalp.
     pub struct CapOptions("coif.cap") {
-        /// Control points of the border on the head, in order around it.
-        border: Vec<Vec3>;
+        /// Control points of the border on the head, in order around it; the natural hairline when left out.
+        border: Vec<Vec3> = vec![];
         /// Where the hair parts to all sides; the top of the head when left out.
         crown: Option<Vec3>;
         /// Thickness of the hair on the head.
@@ -62,10 +62,8 @@ impl CapOptions {
             for (s, span) in spans.iter().enumerate() {
                 for j in 0..r {
                     let edge = position(span, j as f32 / r as f32);
-                    let flat = crown.lerp(edge, fraction(r));
-                    // The border lies on the head; of the rest what is inside is pushed out.
-                    let out = r == rows || ground.solid.signed_distance(flat) < 0.0;
-                    sheet.push(if out { ground.below(flat) } else { flat });
+                    let place = if r == rows { ground.below(edge) } else { halved(crown, edge, r, rows, ground) };
+                    sheet.push(place);
                     let angle = std::f32::consts::TAU * (s as f32 + j as f32 / r as f32) / sectors as f32;
                     uvs.push(Vec2::splat(0.5) + 0.5 * fraction(r) * Vec2::new(trig::cos(angle), trig::sin(angle)));
                     rims.push(((1.0 - fraction(r)) / self.rim).min(1.0));
@@ -172,4 +170,24 @@ fn fan(sectors: usize, rows: usize) -> Vec<[u32; 3]> {
         }
     }
     triangles
+}
+
+/// The place `r` of `rows` (a power of two) on the way from `a` to `b`: the way is halved again and again, and each middle
+/// that lies inside the head is pushed out before it is halved further. So the steps stay alike also where the chord
+/// passes near the reference point.
+fn halved(mut a: Vec3, mut b: Vec3, r: usize, rows: usize, ground: &Ground) -> Vec3 {
+    let (mut lo, mut hi) = (0, rows);
+    loop {
+        let middle = 0.5 * (a + b);
+        let middle = if ground.solid.signed_distance(middle) < 0.0 { ground.below(middle) } else { middle };
+        let at = (lo + hi) / 2;
+        match r.cmp(&at) {
+            std::cmp::Ordering::Equal => return middle,
+            std::cmp::Ordering::Less => (b, hi) = (middle, at),
+            std::cmp::Ordering::Greater => (a, lo) = (middle, at),
+        }
+        if hi - lo < 2 {
+            return if r == lo { a } else { b };
+        }
+    }
 }

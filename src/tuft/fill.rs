@@ -3,11 +3,10 @@
 //! Numbers in brackets are the paper's equations; `docs/methods/tufts.md` lists every departure.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
-use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
-use super::{Ground, Section, Stroke, Tuft, TuftError, Tufts, azimuth_elevation, toward};
+use super::{Ground, Section, Stroke, Tuft, TuftError, azimuth_elevation, toward};
 use crate::math::{rng::Key, trig};
 use crate::task::{Warned, Warning};
 
@@ -21,10 +20,6 @@ pub const JITTER: f32 = PI / 20.0;
 crate::params! {
     /// More tufts between given ones: around the head, and in rows towards crown and neck.
     pub struct FillOptions("coif.fill") {
-        /// The tufts to fill between, in order, each with the same number of control points. From each to the next the
-        /// fill goes about the head from left over back to right; a single tuft, or the same one twice, goes all the
-        /// way around.
-        tufts: Vec<Arc<Tufts>>, positional();
         /// Density from tuft to tuft.
         around: f32 = 50.0, range(1.0, 100.0);
         /// Density of rows towards the crown; none when left out.
@@ -42,18 +37,7 @@ crate::params! {
 
 impl Default for FillOptions {
     fn default() -> Self {
-        Self { tufts: Vec::new(), around: 50.0, up: None, down: None, jitter: 0.0, seed: 0, everywhere: false }
-    }
-}
-
-impl FillOptions {
-    /// [`fill()`] between all tufts of `self.tufts`, in order.
-    ///
-    /// # Errors
-    /// As [`fill()`].
-    pub fn run(&self, ground: &Ground) -> Result<Warned<Vec<Tuft>>, TuftError> {
-        let all: Vec<Tuft> = self.tufts.iter().flat_map(|t| t.tufts.iter().cloned()).collect();
-        fill(&all, self, ground)
+        Self { around: 50.0, up: None, down: None, jitter: 0.0, seed: 0, everywhere: false }
     }
 }
 

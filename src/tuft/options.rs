@@ -58,8 +58,6 @@ crate::params! {
         rings: Option<u32>, range(1.0, 1000.0);
         /// Number of vertices around the tuft instead of `tolerance`; alone, rings stand at the control points.
         sides: Option<u32>, range(3.0, 400.0);
-        /// Which colour of the palette, from 0.
-        colour: u32 = 0;
         /// Lets the tuft run through the head without a warning.
         bury: bool = false;
     }
@@ -121,7 +119,6 @@ impl TuftOptions {
         let tuft = Tuft {
             up: self.up.map(|d| d.0),
             detail: self.detail()?,
-            colour: self.colour,
             bury: self.bury,
             ..Tuft::new(stroke, self.section()?)?
         };

@@ -12,7 +12,6 @@ use super::skin::{self, Out, Surface};
 use super::{Ground, Section, Stroke, TuftError};
 use crate::geometry::{Mesh, MeshError};
 use crate::math::rng::Key;
-use crate::params::Object;
 
 /// One lock of stylised hair.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,10 +103,6 @@ pub struct Tufts {
     pub tufts: Vec<Tuft>,
     /// Places in the script (`fringe.lua:24`) that made tufts.
     pub sources: Vec<Arc<str>>,
-}
-
-impl Object for Tufts {
-    const NAME: &'static str = "Tufts";
 }
 
 /// A tuft's rectangle in the texture atlas.

@@ -18,6 +18,9 @@ pub struct PartFigures {
     pub guides: usize,
     /// Points: nodes of strands, or corners of a surface.
     pub points: usize,
+    /// Locks of stylised hair.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub tufts: usize,
     /// Triangles of a surface.
     pub triangles: usize,
     /// Mean length of a strand, cm.
@@ -27,6 +30,11 @@ pub struct PartFigures {
     /// Strands with a node or a segment inside the head.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inside: Option<usize>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
+fn is_zero(n: &usize) -> bool {
+    *n == 0
 }
 
 /// Figures of every part, in the scene's order.
@@ -41,6 +49,19 @@ pub fn figures(scene: &Scene) -> Vec<PartFigures> {
                 triangles: mesh.triangles.len(),
                 ..PartFigures::default()
             },
+            Body::Locks(locks) => {
+                let mesh = &locks.mesh.mesh;
+                let lengths: Vec<f32> = locks.tufts.tufts.iter().map(crate::tuft::Tuft::length).collect();
+                PartFigures {
+                    part: part.name.clone(),
+                    tufts: lengths.len(),
+                    points: mesh.positions.len(),
+                    triangles: mesh.triangles.len(),
+                    mean_length: lengths.iter().sum::<f32>() / lengths.len().max(1) as f32,
+                    longest: lengths.iter().copied().fold(0.0, f32::max),
+                    ..PartFigures::default()
+                }
+            }
             Body::Hair(hair) => {
                 let strands = &hair.strands;
                 let count = strands.count();
@@ -68,7 +89,7 @@ pub fn count_inside(scene: &Scene, figures: &mut [PartFigures]) {
         .iter()
         .filter_map(|part| match &part.body {
             Body::Mesh(mesh, _) => Solid::new(mesh).ok(),
-            Body::Hair(_) => None,
+            Body::Hair(_) | Body::Locks(_) => None,
         })
         .collect();
     for (part, figures) in scene.parts.iter().zip(figures) {

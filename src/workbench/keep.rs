@@ -25,6 +25,11 @@ pub fn scene_key(what: &str, scene: &Scene, shows: Shows, memo: &Memo) -> Digest
         key.bytes(part.name.as_bytes());
         match &part.body {
             Body::Mesh(mesh, look) => mesh.digest(key.data(look)),
+            Body::Locks(locks) => {
+                locks.mesh.mesh.digest(key.data(&locks.kind).data(&locks.palette));
+                // Colours, numbers and strokes; where they were made too, which is rarely all that differs.
+                key.data(&locks.tufts.tufts).data(&locks.tufts.sources).bytes(part.source.as_bytes());
+            }
             Body::Hair(hair) => {
                 key.key(memo.content(&hair.strands)).key(memo.content(&hair.guides)).data(&hair.material);
                 match shows {

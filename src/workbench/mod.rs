@@ -3,6 +3,7 @@
 //! Everything is made in memory first, written beside its place and renamed into it: a reader never sees half a file,
 //! and after an error the folder is as it was before.
 
+mod budget;
 pub mod diff;
 mod figures;
 mod keep;
@@ -15,6 +16,7 @@ pub mod test;
 pub mod variations;
 pub mod watch;
 
+pub use budget::{Budget, keep_within};
 pub use figures::{PartFigures, figures};
 pub use new::{DEFINITIONS, NewError, api, new};
 pub use output::{Output, WriteError, Written, write_all};

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::budget::Budget;
 use super::keep::{Shows, kept, scene_key};
 use super::output::{Output, WriteError, Written, write_all};
 use super::{PartFigures, figures};
@@ -12,6 +13,7 @@ use crate::render::{PngError, RenderError, SheetOptions, Speed, png, sheet};
 use crate::scene::{Background, Scene, View};
 use crate::script::{self, Ending, Files, Origin, Outcome};
 use crate::task::Task;
+use crate::tuft::TuftError;
 
 /// What is wanted of a run.
 #[derive(Clone, Debug)]
@@ -34,6 +36,8 @@ pub struct RunOptions {
     pub tolerance: f32,
     /// A second GLB with the guides.
     pub guides: bool,
+    /// Most triangles of all tufts together.
+    pub triangles: Option<usize>,
     /// Count the strands that are inside the head.
     pub count_inside: bool,
 }
@@ -64,6 +68,9 @@ pub enum RunError {
     /// No picture file.
     #[error(transparent)]
     Png(#[from] PngError),
+    /// Too few triangles asked for.
+    #[error("{0}")]
+    Budget(TuftError),
     /// No GLB.
     #[error(transparent)]
     Export(ExportError),
@@ -99,6 +106,8 @@ pub struct Report {
     pub figures: Vec<PartFigures>,
     /// Steps and their times, in order.
     pub stages: Vec<Stage>,
+    /// What was done to keep within the triangles.
+    pub budget: Option<Budget>,
     /// The files, in the order they were put into place; or why there are none.
     pub written: Result<Vec<Written>, RunError>,
 }
@@ -131,13 +140,22 @@ pub fn exports(options: &RunOptions, report: &mut Report, task: &Task) {
 fn prepare(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
     let mut stages = vec![];
     let outcome = timed(&mut stages, "script", || script::run(&options.script, files, task));
-    let mut report = Report { outcome, figures: vec![], stages, written: Ok(vec![]) };
+    let mut report = Report { outcome, figures: vec![], stages, budget: None, written: Ok(vec![]) };
     let Some(scene) = report.outcome.scene.as_mut() else { return report };
     if let Some(background) = options.background {
         scene.look.background = background;
     }
     if let Some(views) = &options.views {
         scene.views.clone_from(views);
+    }
+    if let Some(triangles) = options.triangles {
+        match timed(&mut report.stages, "triangles", || super::budget::keep_within(scene, triangles)) {
+            Ok(budget) => report.budget = Some(budget),
+            Err(error) => {
+                report.written = Err(RunError::Budget(error));
+                return report;
+            }
+        }
     }
     report.figures = figures(scene);
     if options.count_inside {
@@ -153,6 +171,9 @@ fn finish(
     task: &Task,
     make: impl FnOnce(&Scene, &mut Vec<Stage>) -> Result<Vec<Output>, RunError>,
 ) {
+    if report.written.is_err() {
+        return;
+    }
     let stages = &mut report.stages;
     report.written = match (report.outcome.ending, &report.outcome.scene) {
         (Ending::Cancelled, _) => Err(RunError::Cancelled),

@@ -106,6 +106,6 @@ pub fn scene(count: u64) -> Scene {
 pub fn hair_of(scene: &mut Scene) -> &mut Hair {
     match &mut scene.parts[1].body {
         Body::Hair(hair) => hair,
-        Body::Mesh(..) => panic!("the second part is hair"),
+        Body::Mesh(..) | Body::Locks(_) => panic!("the second part is hair"),
     }
 }

@@ -147,7 +147,13 @@ impl Runner<'_> {
             Err(RunError::Script) => {
                 Err(Some(Shown { summary: String::new(), notes, picture: vec![], event: events::bad(outcome) }))
             }
-            Err(error @ (RunError::Render(_) | RunError::Png(_) | RunError::Export(_) | RunError::Write(_))) => {
+            Err(
+                error @ (RunError::Render(_)
+                | RunError::Png(_)
+                | RunError::Export(_)
+                | RunError::Budget(_)
+                | RunError::Write(_)),
+            ) => {
                 Err(Some(Shown::message(error.to_string())))
             }
         }

@@ -98,7 +98,7 @@ pub struct Extras<T> {
 /// Where a part comes from and what it holds.
 #[derive(Serialize, Default)]
 pub struct PartExtras {
-    /// What it is: `head`, `hair` or `guides`.
+    /// What it is: `head`, `hair`, `guides`, `tufts`, `cap`, `bun` or `ring`.
     pub kind: &'static str,
     /// Place in the script that made the part.
     #[serde(skip_serializing_if = "String::is_empty")]
@@ -107,7 +107,9 @@ pub struct PartExtras {
     pub strands: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub guides: Option<usize>,
-    /// Places in the script that made strands; the attribute `_SOURCE` is an index into it, 0 where it is missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tufts: Option<usize>,
+    /// Places in the script that made strands or tufts; the attribute `_SOURCE` is an index into it, 0 where it is missing.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sources: Vec<String>,
     /// No strand is farther than this from what is drawn of it.

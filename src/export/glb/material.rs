@@ -8,7 +8,7 @@ use super::document::{
 };
 use crate::export::appearance;
 use crate::math::Colour;
-use crate::scene::{HairMaterial, MeshMaterial};
+use crate::scene::{HairMaterial, Locks, MeshMaterial};
 
 /// Texels of the ramp from root to tip.
 const RAMP: usize = 64;
@@ -26,6 +26,25 @@ pub fn surface(document: &mut Document, name: &str, look: &MeshMaterial) -> u32 
                 base_color_texture: None,
                 metallic_factor: 0.0,
                 roughness_factor: look.roughness.clamp(0.0, 1.0),
+            },
+            double_sided: false,
+            extensions: None,
+            extras: None,
+        },
+    )
+}
+
+/// The material of stylised hair, whose vertices have its colours; its index.
+pub fn locks(document: &mut Document, name: &str, locks: &Locks) -> u32 {
+    push(
+        document,
+        Material {
+            name: name.to_owned(),
+            pbr_metallic_roughness: Pbr {
+                base_color_factor: [1.0; 4],
+                base_color_texture: None,
+                metallic_factor: 0.0,
+                roughness_factor: locks.look(0).roughness.clamp(0.0, 1.0),
             },
             double_sided: false,
             extensions: None,

@@ -5,10 +5,14 @@
 //! are lines instead, and the guides are always lines, in a file of their own. Every vertex names its strand
 //! (`_STRAND_ID`), its guide (`_GUIDE_ID`), where strands of several script lines are in one part also the line
 //! (`_SOURCE`, an index into the node's `extras.coif.sources`), and has the strand's diameter in metres (`_WIDTH`).
+//!
+//! Stylised hair is one mesh with one material: uv in an atlas (`v` from root to tip), tangents along `u`, the tuft's
+//! colour as vertex colour, `_TUFT_ID`, and `_SOURCE` where several script lines made tufts.
 
 mod buffer;
 mod document;
 mod frames;
+mod locks;
 mod material;
 mod shapes;
 
@@ -22,7 +26,7 @@ use self::shapes::{Drawn, METRES};
 use super::reduce::reduce;
 use super::{ExportError, check_hair, check_tolerance, with_normals};
 use crate::geometry::{Mesh, Strands};
-use crate::scene::{Body, HairMaterial, Part, Scene};
+use crate::scene::{Body, HairMaterial, Locks, Part, Scene};
 use crate::task::Task;
 
 crate::choices! {
@@ -75,6 +79,22 @@ pub fn glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Vec<u8>, 
                 file.part(&part.name, Some((&slot, material, document::TRIANGLES)), extras);
                 file.jobs.push(Job::Surface(mesh, slot));
             }
+            Body::Locks(locks) => {
+                locks.mesh.mesh.validate().map_err(|error| ExportError::Mesh { part: part.name.clone(), error })?;
+                let (attributes, vertices, indices) = locks::layout(locks);
+                let slot = file.plan.primitive(&mut file.document, &attributes, vertices, indices);
+                let material = material::locks(&mut file.document, &part.name, locks);
+                let count = locks.tufts.count();
+                let extras = PartExtras {
+                    kind: locks.kind.text(),
+                    source: part.source.clone(),
+                    tufts: (count > 0).then_some(count),
+                    sources: locks.tufts.sources.iter().map(|s| s.as_ref().to_owned()).collect(),
+                    ..PartExtras::default()
+                };
+                file.part(&part.name, Some((&slot, material, document::TRIANGLES)), extras);
+                file.jobs.push(Job::Locks(locks, slot));
+            }
             Body::Hair(hair) => {
                 check_hair(part, hair)?;
                 file.strands(part, &hair.strands, &hair.material, (options.strands, options.tolerance), task, |e| {
@@ -106,6 +126,7 @@ pub fn guides_glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Ve
 /// What is still to be written into the buffer, once it exists.
 enum Job<'a> {
     Surface(Cow<'a, Mesh>, Slot),
+    Locks(&'a Locks, Slot),
     Ribbons(Drawn<'a>, Slot),
     Lines(Drawn<'a>, Slot),
     Blob(Vec<u8>, std::ops::Range<usize>),
@@ -161,6 +182,7 @@ impl<'a> File<'a> {
             guides: None,
             sources: strands.sources.iter().map(|s| s.as_ref().to_owned()).collect(),
             tolerance_cm: Some(tolerance),
+            ..PartExtras::default()
         };
         more(&mut extras);
         if strands.count() == 0 {
@@ -214,6 +236,7 @@ impl<'a> File<'a> {
             task.progress("writing glb", i as f32 / count);
             let (bounds, slot) = match job {
                 Job::Surface(mesh, slot) => (shapes::write_surface(&mesh, buffer, &slot), slot),
+                Job::Locks(locks, slot) => (locks::write(locks, buffer, &slot), slot),
                 Job::Ribbons(drawn, slot) => (drawn.write_ribbons(buffer, &slot, task)?, slot),
                 Job::Lines(drawn, slot) => (drawn.write_lines(buffer, &slot, task)?, slot),
                 Job::Blob(bytes, range) => {

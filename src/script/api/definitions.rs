@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::words::{annotation, class, functions as all_functions, limits, one_line, returned, shared, wrap};
+use super::words::{annotation, called, class, functions as all_functions, limits, one_line, returned, shared, wrap};
 use crate::params::{Field, Kind, Value};
 use crate::script::bind::SEED;
 use crate::script::object::OPERATORS;
@@ -76,12 +76,6 @@ fn noun(out: &mut String, registry: &Registry, noun: &Noun) {
             one_line(getter.doc)
         );
     }
-    if let Some(lookup) = noun.lookup {
-        let _ = writeln!(out, "---@field [string] {}", returned(registry, lookup.returns));
-    }
-    if let Some(with) = noun.methods.iter().find(|m| m.short_name() == "with") {
-        let _ = writeln!(out, "---@operator call(table<string, any>): {}", returned(registry, with.returns));
-    }
     for (_, sign, method) in OPERATORS {
         let word = match *sign {
             "+" => "add",
@@ -91,6 +85,15 @@ fn noun(out: &mut String, registry: &Registry, noun: &Noun) {
         if noun.methods.iter().any(|m| m.short_name() == *method) {
             let _ = writeln!(out, "---@operator {word}(coif.{0}): coif.{0}", noun.name);
         }
+    }
+    if let Some(lookup) = noun.lookup {
+        let _ = writeln!(out, "---@field [string] {}", returned(registry, lookup.returns));
+    }
+    if let Some(entry) = called(noun) {
+        let class = class(entry);
+        let argument = |f: &Field| format!("{}: {}", f.name, annotation(registry, &class, f));
+        let arguments = (entry.fields)().iter().map(argument).collect::<Vec<_>>().join(", ");
+        let _ = writeln!(out, "---@overload fun({arguments}): {}", returned(registry, entry.returns));
     }
     let _ = writeln!(out, "local {} = {{}}", noun.name);
     for method in &noun.methods {
@@ -104,9 +107,8 @@ fn function(out: &mut String, registry: &Registry, entry: &Entry, name: &str) {
     let class = class(entry);
     if entry.shape == Shape::Table && !fields.is_empty() {
         table(out, registry, &class, &format!("{class}.fields"), &fields, &format!("What `{name}` takes."));
-    }
-    if entry.shape == Shape::Positional {
-        nested_tables(out, registry, &class, &fields);
+    } else {
+        inner_tables(out, registry, &class, &fields);
     }
     out.push('\n');
     doc(out, entry.doc);
@@ -126,13 +128,25 @@ fn function(out: &mut String, registry: &Registry, entry: &Entry, name: &str) {
             fields.iter().map(|f| f.name).collect()
         }
     };
-    let _ = writeln!(out, "---@return {}", returned(registry, entry.returns));
+    if entry.returns != "nil" {
+        let _ = writeln!(out, "---@return {}", returned(registry, entry.returns));
+    }
     let _ = writeln!(out, "function {name}({}) end", arguments.join(", "));
+}
+
+/// The classes of the tables in some fields.
+fn inner_tables(out: &mut String, registry: &Registry, owner: &str, fields: &[Field]) {
+    for field in fields {
+        if let (Some(nested), Some(_)) = (field.nested, own_struct(registry, owner, &field.kind)) {
+            let inner = format!("{owner}.{}", field.name);
+            table(out, registry, &inner, &inner, &nested(), field.doc);
+        }
+    }
 }
 
 /// The class of a table, after those of the tables in it.
 fn table(out: &mut String, registry: &Registry, owner: &str, class: &str, fields: &[Field], about: &str) {
-    nested_tables(out, registry, owner, fields);
+    inner_tables(out, registry, owner, fields);
     out.push('\n');
     doc(out, about);
     let _ = writeln!(out, "---@class (exact) {class}");
@@ -145,16 +159,6 @@ fn table(out: &mut String, registry: &Registry, owner: &str, class: &str, fields
         };
         let takes = annotation(registry, owner, field);
         let _ = writeln!(out, "---@field {name} {takes} # {}{}", one_line(field.doc), limits(field));
-    }
-}
-
-/// The classes of tables in fields.
-fn nested_tables(out: &mut String, registry: &Registry, owner: &str, fields: &[Field]) {
-    for field in fields {
-        if let (Some(nested), Some(_)) = (field.nested, own_struct(registry, owner, &field.kind)) {
-            let inner = format!("{owner}.{}", field.name);
-            table(out, registry, &inner, &inner, &nested(), field.doc);
-        }
     }
 }
 

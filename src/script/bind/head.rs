@@ -203,7 +203,8 @@ fn head(call: &Call) -> Result<Value> {
                 forward: fields.forward,
                 groups: fields.groups.clone(),
             };
-            from_file(call, &call.session.options.folder().join(file), "file", &options, &landmarks(call, &fields)?)?
+            let path = call.session.options.folder().join(file);
+            from_file(call, &path, "file", &options, &landmarks(call, &fields)?)?
         }
         (None, None) => {
             let lone = [
@@ -217,7 +218,7 @@ fn head(call: &Call) -> Result<Value> {
                 let hint = "name the file: `file = \"anna.glb\"`".to_owned();
                 return Err(call.problem_at(name, format!("`{name}` is about a file, but there is none"), Some(hint)));
             }
-            return Ok(Value::Handle(Handle::new(built_in(call, fields.style)?)));
+            built_in(call, fields.style)?
         }
     };
     call.session.heads.borrow_mut().insert(key, Arc::clone(&head));
@@ -227,10 +228,15 @@ fn head(call: &Call) -> Result<Value> {
 static ADULT: OnceLock<Arc<Head>> = OnceLock::new();
 static CARTOON: OnceLock<Arc<Head>> = OnceLock::new();
 
-/// Every head that a run can have used: those it made, and the mannequins.
+/// Every head that a run can have used, once: those it made, and the mannequins.
 pub fn heads(session: &Session) -> Vec<Arc<Head>> {
-    let made = session.heads.borrow();
-    made.values().chain(ADULT.get()).chain(CARTOON.get()).map(Arc::clone).collect()
+    let mut all: Vec<Arc<Head>> = vec![];
+    for head in session.heads.borrow().values().chain(ADULT.get()).chain(CARTOON.get()) {
+        if !all.iter().any(|known| Arc::ptr_eq(known, head)) {
+            all.push(Arc::clone(head));
+        }
+    }
+    all
 }
 
 /// A mannequin; made once per process, for it depends on nothing.

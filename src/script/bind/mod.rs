@@ -12,11 +12,13 @@ mod material;
 mod overlay;
 mod params;
 mod picture;
+mod piece;
 mod region;
 mod scene;
 mod strands;
 mod test;
 mod tested;
+mod tuft;
 
 use mlua::Lua;
 
@@ -32,13 +34,21 @@ pub use scene::scene_of;
 
 /// The whole language.
 pub fn registry() -> Registry {
-    let functions =
-        [params::functions(), head::functions(), domain::functions(), material::functions(), scene::functions()];
+    let functions = [
+        params::functions(),
+        head::functions(),
+        domain::functions(),
+        tuft::functions(),
+        piece::functions(),
+        material::functions(),
+        scene::functions(),
+    ];
     let nouns = [
         head::nouns(),
         vec![region::noun(), guides::noun(), strands::noun()],
         domain::nouns(),
-        vec![material::noun(), scene::noun(), test::noun()],
+        tuft::nouns(),
+        vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
         tested::nouns(),
     ];
     Registry {

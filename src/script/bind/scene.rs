@@ -7,11 +7,14 @@ use glam::Affine3A;
 use super::super::call::{Call, Result};
 use super::super::registry::{Entry, Noun};
 use super::overlay;
+use super::piece::Piece as Shape;
 use super::strands::Lock;
+use super::tuft::Wig;
+use crate::geometry::Mesh;
 use crate::head::Head;
 use crate::math::Colour;
 use crate::params::{Handle, Object, Value};
-use crate::scene::{Background, Body, Hair, Look, MeshMaterial, Part, Scene, View};
+use crate::scene::{Background, Body, Hair, Locks, Look, MeshMaterial, Part, Scene, Shading, View};
 use crate::task::Warning;
 
 impl Object for Scene {
@@ -27,6 +30,8 @@ crate::params! {
         views: Vec<View> = vec![View::Front, View::Left, View::Back];
         /// The colour behind everything.
         background: Background = Background::White;
+        /// How surfaces and light are drawn.
+        shading: Shading = Shading::Soft;
         /// Colour of the head.
         skin: Colour = MeshMaterial::default().colour;
     }
@@ -53,6 +58,30 @@ pub fn scene_of(handle: &Handle) -> Option<Arc<Scene>> {
 enum Piece {
     Head(Arc<Head>),
     Hair(Arc<Lock>),
+    Tufts(Wig),
+    Shape(Arc<Shape>),
+}
+
+impl Piece {
+    /// The head that it is, or belongs to.
+    fn head(&self) -> &Arc<Head> {
+        match self {
+            Self::Head(head) => head,
+            Self::Hair(lock) => &lock.area.head,
+            Self::Tufts(wig) => &wig.head,
+            Self::Shape(shape) => &shape.head,
+        }
+    }
+
+    /// What it is and where it was made, for messages.
+    fn made(&self) -> (&'static str, &str) {
+        match self {
+            Self::Head(_) => ("head", ""),
+            Self::Hair(lock) => ("hair", &lock.source),
+            Self::Tufts(wig) => ("tufts", wig.tufts.sources.first().map_or("", |s| s)),
+            Self::Shape(shape) => (shape.kind.text(), &shape.source),
+        }
+    }
 }
 
 fn scene(call: &Call) -> Result<Value> {
@@ -71,23 +100,20 @@ fn scene(call: &Call) -> Result<Value> {
     let heads: Vec<&Arc<Head>> =
         pieces.iter().filter_map(|p| if let Piece::Head(h) = p { Some(h) } else { None }).collect();
     for piece in &pieces {
-        if let (Piece::Hair(lock), false) = (piece, heads.is_empty())
-            && !heads.iter().any(|h| Arc::ptr_eq(h, &lock.area.head))
-        {
-            let warning =
-                Warning::new(format!("the hair made at {} grows on a head that is not in the scene", lock.source));
+        if !heads.is_empty() && !heads.iter().any(|h| Arc::ptr_eq(h, piece.head())) {
+            let (what, source) = piece.made();
+            let verb = if what == "tufts" { "grow" } else { "grows" };
+            let warning = Warning::new(format!("the {what} made at {source} {verb} on a head that is not in the scene"));
             call.warn("", warning.hint("make the head once and use it for everything: `local head = coif.head()`"));
         }
     }
-    let placement = pieces.first().map_or(Affine3A::IDENTITY, |_| {
-        let of_hair = pieces.iter().find_map(|p| if let Piece::Hair(l) = p { Some(&l.area.head) } else { None });
-        heads.first().copied().or(of_hair).map_or(Affine3A::IDENTITY, |h| h.placement)
-    });
+    let placement =
+        heads.first().copied().or(pieces.first().map(Piece::head)).map_or(Affine3A::IDENTITY, |h| h.placement);
     let mut scene = Scene {
         name: call.session.options.name(),
         parts: vec![],
         views: fields.views,
-        look: Look { background: fields.background, debug: false },
+        look: Look { background: fields.background, shading: fields.shading, debug: false },
         placement,
     };
     for piece in &pieces {
@@ -97,6 +123,15 @@ fn scene(call: &Call) -> Result<Value> {
                 ("head", String::new(), Body::Mesh(Arc::clone(&head.mesh), look))
             }
             Piece::Hair(lock) => ("hair", lock.source.to_string(), Body::Hair(hair(lock))),
+            Piece::Tufts(wig) => {
+                // With more than one source, each tuft says its own.
+                let source = if let [one] = wig.tufts.sources.as_slice() { one.to_string() } else { String::new() };
+                ("tufts", source, Body::Locks(Locks::tufts(Arc::clone(&wig.tufts), wig.palette.clone())))
+            }
+            Piece::Shape(shape) => {
+                let locks = Locks::piece(shape.kind, Mesh::clone(&shape.mesh), shape.material.clone());
+                (shape.kind.text(), shape.source.to_string(), Body::Locks(locks))
+            }
         };
         let name = unique(base, &scene.parts);
         scene.parts.push(Part { name, source, body });
@@ -131,6 +166,22 @@ fn take(call: &Call, value: &Value, path: &str, out: &mut Vec<Piece>) -> Result<
                 out.push(Piece::Hair(lock));
                 return Ok(());
             }
+            if let Some(wig) = h.get::<Wig>() {
+                // All tufts of a head become one part: one mesh, one atlas.
+                let same = out.iter_mut().find_map(|p| match p {
+                    Piece::Tufts(all) if Arc::ptr_eq(&all.head, &wig.head) => Some(all),
+                    _ => None,
+                });
+                match same {
+                    Some(all) => *all = all.joined(&wig),
+                    None => out.push(Piece::Tufts(Wig::clone(&wig))),
+                }
+                return Ok(());
+            }
+            if let Some(shape) = h.get::<Shape>() {
+                out.push(Piece::Shape(shape));
+                return Ok(());
+            }
             match h.name() {
                 "Guides" => Some("grow them first: `guides:grow { ... }`"),
                 "Region" => Some("a region shows nothing; grow hair on it: `region:guides { ... }:grow { ... }`"),
@@ -146,7 +197,7 @@ fn take(call: &Call, value: &Value, path: &str, out: &mut Vec<Piece>) -> Result<
         Value::Nil => Some("is the name before it spelt as where it was set?"),
         _ => None,
     };
-    let message = format!("expected a Head or Strands, got {} `{value}`", value.type_name());
+    let message = format!("expected a Head, Strands, Tufts or a Piece, got {} `{value}`", value.type_name());
     Err(call.problem_at(path, message, hint.map(ToOwned::to_owned)))
 }
 

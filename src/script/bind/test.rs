@@ -44,9 +44,9 @@ crate::params! {
     /// Expects two numbers, or two vectors, to be no farther apart than the tolerance.
     pub struct NearFields("Test:near") {
         /// What there is.
-        got: Value, takes("number|Point");
+        got: Value;
         /// What there should be.
-        want: Value, takes("number|Point");
+        want: Value;
         /// How far apart they may be.
         tolerance: f32, range(0.0, 1e30);
     }
@@ -108,7 +108,7 @@ crate::params! {
     /// Expects a function to raise an error.
     pub struct ErrorFields("Test:error") {
         /// Called without arguments.
-        body: Function, takes("(): any");
+        body: Function, takes("(): any?");
         /// What the error must say, as a part of its message.
         text: Option<String>;
     }

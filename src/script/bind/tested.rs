@@ -275,13 +275,19 @@ fn strands(parts: &[Part]) -> Vec<&Strands> {
 fn figures(parts: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
     let hair = strands(parts);
     let mut bounds = Bounds::EMPTY;
-    let (mut points, mut triangles, mut guides) = (0, 0, 0);
+    let (mut points, mut triangles, mut guides, mut tufts) = (0, 0, 0, 0);
     for part in parts {
         match &part.body {
             Body::Mesh(mesh, _) => {
                 bounds = bounds.union(mesh.bounds());
                 points += mesh.positions.len();
                 triangles += mesh.triangles.len();
+            }
+            Body::Locks(locks) => {
+                bounds = bounds.union(locks.mesh.mesh.bounds());
+                points += locks.mesh.mesh.positions.len();
+                triangles += locks.mesh.mesh.triangles.len();
+                tufts += locks.tufts.count();
             }
             Body::Hair(hair) => {
                 bounds = bounds.union(hair.strands.bounds());
@@ -295,6 +301,9 @@ fn figures(parts: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
     put("points", points as f64);
     if triangles > 0 {
         put("triangles", triangles as f64);
+    }
+    if tufts > 0 {
+        put("tufts", tufts as f64);
     }
     if !hair.is_empty() {
         let lengths: Vec<f32> = hair.iter().flat_map(|s| (0..s.count()).map(|i| s.length(i))).collect();

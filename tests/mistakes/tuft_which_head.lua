@@ -1,0 +1,3 @@
+local big, small = coif.head(), coif.head { style = "cartoon" }
+local spike = coif.tuft { stroke = { { 0, 14, 0 }, { 0, 20, 0 } } }
+return coif.scene { big, spike }

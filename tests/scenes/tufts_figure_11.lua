@@ -1,0 +1,24 @@
+-- Figure 11 of Shimosoyama, Yamamoto, Noma 2015: the two tufts of figure 10, filled by various densities m_W (around),
+-- m_U (up) and m_D (down), without and with jitter. The numbers are not printed; `--set` gives others.
+local p = coif.params {
+  around = { 60, min = 1, max = 100, doc = "m_W" },
+  up     = { 0, min = 0, max = 100, doc = "m_U; 0 for no rows" },
+  down   = { 0, min = 0, max = 100, doc = "m_D; 0 for no rows" },
+  jitter = { 0, min = 0, max = 1, doc = "1 strews roots by 9 degrees" },
+}
+local head = coif.head { style = "cartoon" }
+local function tuft(azimuth, d, peak)
+  return coif.tuft {
+    stroke = {
+      { azimuth = azimuth, elevation = 42 }, { azimuth = azimuth, elevation = 40, height = 4 },
+      { azimuth = azimuth, elevation = 20, height = 7 }, { azimuth = azimuth, elevation = -8, height = 6 },
+    },
+    diameter = d, peak = peak, bury = true,
+  }
+end
+local filled = coif.fill {
+  tuft(50, 60, 40), tuft(-50, 36, 30),
+  around = p.around, up = if p.up > 0 then p.up else nil, down = if p.down > 0 then p.down else nil, jitter = p.jitter,
+}
+print(filled.count)
+return coif.scene { head, filled, shading = "toon", views = { "front", "left", "back", "right" } }

@@ -1,0 +1,23 @@
+-- Figure 9 of Shimosoyama, Yamamoto, Noma 2015: several strokes, each with several parameters. The numbers are not
+-- printed; these show a straight stroke, an arc, a wave and a hook.
+local head = coif.head { style = "cartoon" }
+
+local strokes = {
+  { { 40, 0 }, { 40, 6 }, { 40, 12 }, { 40, 18 } },
+  { { 40, 0 }, { 46, 6 }, { 40, 12 }, { 26, 16 } },
+  { { 40, 0 }, { 50, 5 }, { 32, 10 }, { 44, 17 } },
+  { { 40, 0 }, { 46, 8 }, { 30, 13 }, { 12, 8 } },
+}
+local all
+for i, shape in strokes do
+  for k, look in { { 20, 20 }, { 45, 50 }, { 70, 80 } } do
+    local azimuth, stroke = 90 * (i - 1) + 28 * (k - 2), {}
+    for _, p in shape do
+      table.insert(stroke, { azimuth = azimuth, elevation = p[1], height = if p[2] > 0 then p[2] else nil })
+    end
+    local one = coif.tuft { stroke = stroke, diameter = look[1], peak = look[2], bury = true }
+    all = if all then all + one else one
+  end
+end
+assert(all.count == 12)
+return coif.scene { head, all, shading = "toon", views = { "front", "left", "back", "right" } }
