@@ -5,7 +5,7 @@
 //! Printed are median and 95th percentile of the wall clock, and the processor time per round (all threads together),
 //! which other programs on the machine disturb least; and beside them the time of filling the picture's bytes.
 //!
-//! `cargo bench --bench reload -- [ROUNDS] [STRANDS]`
+//! `cargo bench --bench reload -- [ROUNDS] [STRANDS] [SAMPLES]`; SAMPLES per pixel and side, 2 as `coif watch` draws.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -42,6 +42,7 @@ fn main() {
     // `cargo bench` adds `--bench`.
     let numbers: Vec<usize> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
     let (rounds, strands) = (numbers.first().map_or(20, |&n| n.max(1)), numbers.get(1).map_or(40_000, |&n| n));
+    let supersample = numbers.get(2).map_or(2, |&n| n as u32);
     let dir = tempfile::tempdir().expect("a temporary folder");
     let mut script = Options::new(dir.path().join("ponytail.lua"));
     script.set.insert("strands".into(), strands.to_string());
@@ -51,14 +52,17 @@ fn main() {
         debug: false,
         background: None,
         views: Some(vec![View::Front, View::Left, View::Back]),
-        sheet: SheetOptions { width: SIZE, height: SIZE, columns: Some(3), ..SheetOptions::default() },
+        sheet: SheetOptions { width: SIZE, height: SIZE, columns: Some(3), supersample, ..SheetOptions::default() },
         strands: StrandForm::None,
         tolerance: 0.05,
         guides: false,
         count_inside: false,
         triangles: None,
     };
-    println!("{strands} strands, 3 views of {SIZE} x {SIZE}, {rounds} rounds, {} threads", rayon::current_num_threads());
+    println!(
+        "{strands} strands, 3 views of {SIZE} x {SIZE}, {supersample} x {supersample} samples, {rounds} rounds, {} threads",
+        rayon::current_num_threads()
+    );
     let (first, cpu, report) = round(&options, SCRIPT);
     println!("{:18} {:>8}            cpu {:>8}", "the first run", ms(first), ms(cpu));
     tell(&report);

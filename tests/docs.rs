@@ -1,21 +1,24 @@
 //! Every snippet in the docs runs, every file that the docs name is there.
 //!
 //! Blocks of Lua in Markdown are whole scripts. A block opened by "```lua file=PATH" is that file, byte for byte, and one
-//! opened by "```lua continued" goes on from the block before it. There is no way to leave one out.
+//! opened by "```lua continued" goes on from the block before it. Blocks marked "```lua test" are test files, and run as
+//! such beside the examples. There is no way to leave one out.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use coif::head::mannequin::{self, Style};
-use coif::script::{Ending, Memory, Options, run, show_all};
+use coif::script::{Disk, Ending, Files, Memory, Options, run, show_all};
 use coif::task::Task;
+use coif::workbench::test::{TestOptions, test};
 
 /// A block of Lua.
 struct Snippet {
     page: PathBuf,
     line: usize,
     file: Option<String>,
+    is_test: bool,
     text: String,
 }
 
@@ -62,10 +65,10 @@ fn snippets(page: &Path, text: &str) -> Vec<Snippet> {
         match mark {
             "continued" => out.last_mut().unwrap_or_else(|| panic!("{at}: goes on from nothing")).text += &body,
             _ => {
-                let file = mark.strip_prefix("file=");
-                assert!(mark.is_empty() || file.is_some(), "{at}: `{mark}` is not a mark of a snippet");
+                let (file, is_test) = (mark.strip_prefix("file="), mark == "test");
+                assert!(mark.is_empty() || is_test || file.is_some(), "{at}: `{mark}` is not a mark of a snippet");
                 let file = file.map(ToOwned::to_owned);
-                out.push(Snippet { page: page.to_path_buf(), line: i + 1, file, text: body });
+                out.push(Snippet { page: page.to_path_buf(), line: i + 1, file, is_test, text: body });
             }
         }
     }
@@ -101,6 +104,29 @@ fn problem(name: &str, text: &str, files: &Memory) -> Option<String> {
     }
 }
 
+/// Runs a test file beside the examples, once to keep its pictures and once in earnest; what is wrong, if anything.
+fn test_problem(text: &str) -> Option<String> {
+    let dir = tempfile::tempdir().unwrap();
+    for example in files(&root().join("examples"), "lua") {
+        std::fs::copy(&example, dir.path().join(example.file_name().unwrap())).unwrap();
+    }
+    let path = dir.path().join("snippet_test.lua");
+    std::fs::write(&path, text).unwrap();
+    let run = |accept| {
+        let script = Options::new(&path);
+        let options = TestOptions { path: path.clone(), filter: None, accept, out: dir.path().join("out"), script };
+        let files: Arc<dyn Files> = Arc::new(Disk);
+        let mut told = String::new();
+        let report = test(&options, &files, &Task::new(), |result| {
+            told += &show_all(&result.failures, &result.sources, false);
+        });
+        (report.unwrap().is_passed(), told)
+    };
+    run(true);
+    let (is_passed, told) = run(false);
+    (!is_passed).then_some(told)
+}
+
 #[test]
 fn every_snippet_runs() {
     let files = Memory::default().with("anna.obj", anna());
@@ -117,7 +143,11 @@ fn every_snippet_runs() {
                     problems.push(format!("{at}: not the text of {file}"));
                 }
             }
-            if let Some(problem) = problem("snippet.lua", &snippet.text, &files) {
+            let problem = match snippet.is_test {
+                true => test_problem(&snippet.text),
+                false => problem("snippet.lua", &snippet.text, &files),
+            };
+            if let Some(problem) = problem {
                 problems.push(format!("{at}:\n{problem}"));
             }
         }

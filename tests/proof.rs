@@ -212,6 +212,14 @@ fn golden_pictures_are_kept_and_compared() {
     std::fs::write(&golden, &kept[..kept.len() / 2]).unwrap();
     let (code, _, err) = test(&[]);
     assert!(code == 1 && err.contains("is no PNG picture"), "{err}");
+
+    // Two tests cannot keep one picture.
+    std::fs::write(&golden, &kept).unwrap();
+    std::fs::write(dir.path().join("style_test.lua"), format!("{TEST}{}", TEST.replace("test(\"", "test(\"again ")))
+        .unwrap();
+    let (code, _, err) = test(&[]);
+    assert!(code == 1 && err.contains("another test at style_test.lua:8 has a preview `style` too"), "{err}");
+    assert!(err.contains("3 passed, 1 failed"), "{err}");
 }
 
 #[test]
@@ -314,7 +322,7 @@ fn comparisons_tell_what_changed() {
     let longer = STYLE.replace("length = { 4,", "length = { 6,").replace("width = 0.2", "width = 0.3");
     let dir = folder(&[("a.lua", STYLE), ("same.lua", STYLE), ("more.lua", &more), ("longer.lua", &longer)]);
     let json = |b: &str| {
-        let (code, out, err) = coif(dir.path(), &["diff", "a.lua", b, "--json", "--size", "48"]);
+        let (code, out, err) = coif(dir.path(), &["diff", "a.lua", b, "--json", "--each", "--size", "48"]);
         assert_eq!(code, 0, "{err}");
         serde_json::from_str::<serde_json::Value>(&out).unwrap()
     };
@@ -327,6 +335,8 @@ fn comparisons_tell_what_changed() {
     let hair = &more["parts"][1];
     assert_eq!((&hair["added"], &hair["removed"], &hair["moved"]), (&30.into(), &0.into(), &0.into()), "{more}");
     assert_eq!(more["parts"][0]["state"], "same");
+    let each = hair["strands"].as_array().unwrap();
+    assert!(each.len() == 30 && each.iter().all(|s| s["what"] == "added" && s["id"].as_str().unwrap().len() == 16));
 
     let longer = json("longer.lua");
     assert_eq!(longer["parameters"][0]["what"], "default of length", "{longer}");

@@ -401,6 +401,11 @@ function coif.material.hair(fields) end
 ---@return coif.Scene
 function coif.scene(fields) end
 
+---Declares a test; it is run by `coif test`, in a fresh state of its own.
+---@param name string # What it shows, in a few words; unique within the file.
+---@param body fun(t: coif.Test) # Takes the Test, `t`, whose methods run styles and state what is expected.
+function coif.test(name, body) end
+
 ---A head in head space: its origin lies between the ears, x points to its left, y up, z to the front, in cm.
 ---@class coif.Head
 ---@field scale number # Height from chin to vertex over an adult's 23 cm; offsets are multiplied by it.
@@ -594,7 +599,7 @@ function Strands:natural(fields) end
 ---What `Strands:fill` takes.
 ---@class (exact) coif.Strands.fill.fields
 ---@field strands? number # How many strands. [whole; 1 or more; default 40000]
----@field nodes? number # Nodes per strand; as many as the guides have, at most 128, when left out. [whole; 2 to 4096]
+---@field nodes? number # Nodes per strand; when left out as many as the guides' bends need, at most as many as the guides have or 128. [whole; 2 to 4096]
 ---@field neighbours? number # How many guides a strand follows at most. [whole; 1 to 8; default 4]
 ---@field length_variation? number # How much shorter strands may be than their guides, as a part of the length. [0 to 1; default 0.05]
 ---@field noise? number # Standard deviation of the gaussian noise on the tangents, smooth along the strand. [0 to 10; default 0.02]
@@ -649,3 +654,115 @@ local HairMaterial = {}
 ---A finished hairstyle.
 ---@class coif.Scene
 local Scene = {}
+
+---A running test: runs styles, and states what is expected. There is one only under `coif test`.
+---@class coif.Test
+local Test = {}
+
+---Runs a style: `t:run "ponytail.lua" { length = 60 }`. Its path begins at the test's folder. A table of
+---parameters gives them as `--set` does; `seed` in it is the run's seed.
+---@param script string # The style's file.
+---@param parameters? table<string, any> # Parameters by name.
+---@return coif.TestScene
+function Test:run(script, parameters) end
+
+---A scene that the test itself made, with its parts by name.
+---@param scene coif.Scene # What `coif.scene` gave.
+---@return coif.TestScene
+function Test:scene(scene) end
+
+---Expects two values to be the same: numbers, texts, vectors, or tables of them, entry by entry.
+---@param got? any # What there is.
+---@param want? any # What there should be.
+---@return boolean
+function Test:equal(got, want) end
+
+---Expects two numbers, or two vectors, to be no farther apart than the tolerance.
+---@param got any # What there is.
+---@param want any # What there should be.
+---@param tolerance number # How far apart they may be. [0 or more]
+---@return boolean
+function Test:near(got, want, tolerance) end
+
+---Expects a number to be less than another.
+---@param got number # What there is.
+---@param limit number # What it must stay below.
+---@return boolean
+function Test:less(got, limit) end
+
+---Expects a number to be greater than another.
+---@param got number # What there is.
+---@param limit number # What it must exceed.
+---@return boolean
+function Test:greater(got, limit) end
+
+---Expects a number to lie between two others, both allowed.
+---@param got number # What there is.
+---@param least number # The least allowed.
+---@param most number # The greatest allowed.
+---@return boolean
+function Test:between(got, least, most) end
+
+---Expects a value to be neither false nor nil.
+---@param value? any # Anything.
+---@param message? string # What it means when it does not hold.
+---@return boolean
+function Test:ok(value, message) end
+
+---Stops the test, as failed, unless a value is neither false nor nil: `t:require(t:less(a, b))`.
+---@param value? any # Anything.
+---@param message? string # What it means when it does not hold.
+---@return any
+function Test:require(value, message) end
+
+---Expects a function to raise an error.
+---@param body fun(): any? # Called without arguments.
+---@param text? string # What the error must say, as a part of its message.
+---@return boolean
+function Test:error(body, text) end
+
+---How it is drawn and compared.
+---@class (exact) coif.Test.preview.options
+---@field views? ("front"|"back"|"left"|"right"|"top"|"three-quarter"|"back-three-quarter")[] # The views, side by side; the scene's first one when left out.
+---@field size? number # Width of one view in pixels; its height is nine eighths of it. [whole; px; 16 to 1024; default 120]
+---@field tolerance? number # How far a channel of a pixel may differ, out of 255. [whole; 0 to 255; default 1]
+---@field background? "white"|"dark" # The colour behind everything, instead of the scene's own.
+
+---Expects the preview of a scene to be the golden picture `golden/NAME.png` beside the test.
+---@param scene coif.TestScene|coif.Scene # What `t:run` gave, or a scene.
+---@param name string # Name of the picture: letters, digits, `-` and `_`.
+---@param options? coif.Test.preview.options # How it is drawn and compared.
+---@return boolean
+function Test:preview(scene, name, options) end
+
+---The scene of a style, in a test; its parts are reached by name: `scene.hair`, `scene.head`. The style is run
+---when its scene is first asked for.
+---@class coif.TestScene
+---@field [string] coif.TestPart
+---@overload fun(parameters: table<string, any>): coif.TestScene
+local TestScene = {}
+
+---The same style with these parameters; `scene { length = 60 }` is short for it.
+---@param parameters table<string, any> # Parameters by name.
+---@return coif.TestScene
+function TestScene:with(parameters) end
+
+---The figures of all parts together; see `TestPart:stats`.
+---@return table<string, any>
+function TestScene:stats() end
+
+---A part of a tested scene: hair, or a head.
+---@class coif.TestPart
+local TestPart = {}
+
+---Figures. Of hair: `strands`, `points`, `guides`, `mean_length`, `longest`, `shortest` (cm), `inside` (strands
+---with a node or a segment inside the head), `coverage` (the fraction of the scalp within 1 cm of a strand),
+---`symmetry` (mean distance in cm from the hair's mirror image to the hair). Of a surface: `points`, `triangles`.
+---Of both: `min` and `max`, the corners of the bounding box.
+---@return table<string, any>
+function TestPart:stats() end
+
+---The fraction of the scalp that has a strand within some distance.
+---@param reach? number # How near a strand must come. [cm; 0.01 to 100; default 1]
+---@return number
+function TestPart:coverage(reach) end

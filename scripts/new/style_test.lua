@@ -1,4 +1,6 @@
--- NAME_test.lua: what must stay true of NAME.lua. `coif test` runs it; `coif test --accept` takes the picture as it is.
+-- NAME_test.lua: what must stay true of NAME.lua.
+--   coif test .             runs it
+--   coif test . --accept    keeps its picture as golden/NAME.png, which the next runs are compared with
 
 coif.test("NAME grows on the head and stays out of it", function(t)
   local scene = t:run "NAME.lua" { strands = 2000 }

@@ -95,6 +95,9 @@ pub struct DiffArguments {
     /// Print the changes as one JSON object on standard output
     #[arg(long)]
     pub json: bool,
+    /// List every changed strand by its id in that object
+    #[arg(long, requires = "json")]
+    pub each: bool,
     /// Draw no picture
     #[arg(long)]
     pub no_picture: bool,
@@ -229,6 +232,7 @@ pub fn command_diff(arguments: &DiffArguments) -> u8 {
         before,
         view: arguments.view,
         sheet: cell(arguments.size),
+        each: arguments.each,
         out: (!arguments.no_picture).then(|| arguments.out.clone()),
     };
     let report = match barrier::run(&arguments.script, move |task| diff(&options, &disk(), task)) {

@@ -497,7 +497,7 @@ mod tests {
                 let (bound, distance) = (solid.clearance(p), solid.signed_distance(p));
                 positive += u32::from(bound > 0.0);
                 assert!(bound <= distance.max(0.0) + 1e-5, "{p}: {bound} against {distance}");
-                let q = p + key.with(i).with(3).direction() * 0.8;
+                let q = p + key.with(i).with(3).direction() * 0.1;
                 if solid.is_surely_outside(p, q) {
                     sure += 1;
                     assert!(distance > 0.0 && solid.segment_hit(p, q).is_none(), "{p} to {q}");

@@ -59,10 +59,13 @@ fn method(lua: &Lua, entry: &'static registry::Entry) -> mlua::Result<mlua::Func
     Ok(function)
 }
 
-/// `value { ... }`: its method `with`, where it has one.
+/// The method that calling a value stands for.
+pub const CALLED: &str = "with";
+
+/// `value { ... }`: its method [`CALLED`], where it has one.
 fn call(lua: &Lua, this: &AnyUserData, args: mlua::MultiValue) -> mlua::Result<mlua::Value> {
     let noun = this.borrow::<Held>()?.noun();
-    let Some(entry) = noun.and_then(|n| n.methods.iter().find(|m| m.short_name() == "with")) else {
+    let Some(entry) = noun.and_then(|n| n.methods.iter().find(|m| m.short_name() == CALLED)) else {
         let message = format!("attempt to call a {}", noun.map_or("value", |n| n.name));
         return Err(strict::raise(lua, &message, Some("it is a value, not a function".into()), None));
     };

@@ -104,6 +104,8 @@ pub struct Getter {
 /// Finds what a noun has by other names than those it was described with: the parts of a tested scene.
 #[derive(Clone, Copy)]
 pub struct Lookup {
+    /// The type of what is behind them.
+    pub returns: &'static str,
     /// All such names of a value.
     pub names: fn(&mlua::Lua, &Handle) -> mlua::Result<Vec<String>>,
     /// What is behind one of them.

@@ -14,12 +14,12 @@ local examples = {
 }
 
 local names = {}
-for name in examples do
+for name in pairs(examples) do
   table.insert(names, name)
 end
 table.sort(names)
 
-for _, name in names do
+for _, name in ipairs(names) do
   coif.test(name, function(t)
     local scene = t:run("../../examples/" .. name .. ".lua", { strands = 3000 })
     t:equal(scene:stats().inside, 0)

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::words::{annotation, class, functions as all_functions, limits, one_line, returned, shared, wrap};
+use super::words::{annotation, called, class, functions as all_functions, limits, one_line, returned, shared, wrap};
 use crate::params::{Field, Kind, Value};
 use crate::script::bind::SEED;
 use crate::script::object::OPERATORS;
@@ -86,6 +86,15 @@ fn noun(out: &mut String, registry: &Registry, noun: &Noun) {
             let _ = writeln!(out, "---@operator {word}(coif.{0}): coif.{0}", noun.name);
         }
     }
+    if let Some(lookup) = noun.lookup {
+        let _ = writeln!(out, "---@field [string] {}", returned(registry, lookup.returns));
+    }
+    if let Some(entry) = called(noun) {
+        let class = class(entry);
+        let argument = |f: &Field| format!("{}: {}", f.name, annotation(registry, &class, f));
+        let arguments = (entry.fields)().iter().map(argument).collect::<Vec<_>>().join(", ");
+        let _ = writeln!(out, "---@overload fun({arguments}): {}", returned(registry, entry.returns));
+    }
     let _ = writeln!(out, "local {} = {{}}", noun.name);
     for method in &noun.methods {
         function(out, registry, method, method.name);
@@ -98,6 +107,8 @@ fn function(out: &mut String, registry: &Registry, entry: &Entry, name: &str) {
     let class = class(entry);
     if entry.shape == Shape::Table && !fields.is_empty() {
         table(out, registry, &class, &format!("{class}.fields"), &fields, &format!("What `{name}` takes."));
+    } else {
+        inner_tables(out, registry, &class, &fields);
     }
     out.push('\n');
     doc(out, entry.doc);
@@ -117,18 +128,25 @@ fn function(out: &mut String, registry: &Registry, entry: &Entry, name: &str) {
             fields.iter().map(|f| f.name).collect()
         }
     };
-    let _ = writeln!(out, "---@return {}", returned(registry, entry.returns));
+    if entry.returns != "nil" {
+        let _ = writeln!(out, "---@return {}", returned(registry, entry.returns));
+    }
     let _ = writeln!(out, "function {name}({}) end", arguments.join(", "));
 }
 
-/// The class of a table, after those of the tables in it.
-fn table(out: &mut String, registry: &Registry, owner: &str, class: &str, fields: &[Field], about: &str) {
+/// The classes of the tables in some fields.
+fn inner_tables(out: &mut String, registry: &Registry, owner: &str, fields: &[Field]) {
     for field in fields {
         if let (Some(nested), Some(_)) = (field.nested, own_struct(registry, owner, &field.kind)) {
             let inner = format!("{owner}.{}", field.name);
             table(out, registry, &inner, &inner, &nested(), field.doc);
         }
     }
+}
+
+/// The class of a table, after those of the tables in it.
+fn table(out: &mut String, registry: &Registry, owner: &str, class: &str, fields: &[Field], about: &str) {
+    inner_tables(out, registry, owner, fields);
     out.push('\n');
     doc(out, about);
     let _ = writeln!(out, "---@class (exact) {class}");

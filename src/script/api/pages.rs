@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::Document;
-use super::words::{class, default, first_sentence, functions as all_functions, one_line, shared};
+use super::words::{called, class, default, first_sentence, functions as all_functions, one_line, shared};
 use crate::params::{Field, Kind};
 use crate::script::bind::SEED;
 use crate::script::object::OPERATORS;
@@ -79,6 +79,12 @@ fn noun_page(registry: &Registry, noun: &Noun) -> String {
     if !operators.is_empty() {
         let _ = write!(out, "\n## Operators\n\n{}.\n", operators.join(", "));
     }
+    if let Some(entry) = called(noun) {
+        let _ = write!(out, "\n`value {{ ... }}` is short for `value:{} {{ ... }}`.\n", entry.short_name());
+    }
+    if let Some(lookup) = noun.lookup {
+        let _ = write!(out, "\nIts other names give a {}.\n", linked(registry, lookup.returns));
+    }
     for method in &noun.methods {
         function(&mut out, registry, method);
     }
@@ -106,7 +112,11 @@ fn function(out: &mut String, registry: &Registry, entry: &Entry) {
             format!("{}({})", entry.name, fields.iter().map(argument).collect::<Vec<_>>().join(", "))
         }
     };
-    let _ = write!(out, "\n## {}\n\n`{usage}` gives {}.\n", entry.name, linked(registry, entry.returns));
+    let gives = match entry.returns {
+        "nil" => "nothing".to_owned(),
+        other => linked(registry, other),
+    };
+    let _ = write!(out, "\n## {}\n\n`{usage}` gives {gives}.\n", entry.name);
     let _ = write!(out, "\n{}\n", one_line(entry.doc));
     table(out, registry, &class(entry), &fields);
 }

@@ -1,7 +1,8 @@
 //! How types, defaults and docs are written.
 
 use crate::params::{Field, Kind};
-use crate::script::registry::{Entry, Registry, Shape};
+use crate::script::object::CALLED;
+use crate::script::registry::{Entry, Noun, Registry, Shape};
 
 /// Names of tables and texts that stand for a value of the core, declared by the preamble of the definitions.
 const GIVEN: [&str; 3] = ["Point", "Direction", "Colour"];
@@ -136,9 +137,14 @@ pub fn default(field: &Field) -> Option<String> {
     field.default.as_ref().filter(|d| !["", "nil", "\"\"", "{}"].contains(&d.as_str())).cloned()
 }
 
-/// Every function below `coif`.
+/// Every function below `coif`, those of tests last.
 pub fn functions(registry: &Registry) -> impl Iterator<Item = &Entry> {
-    registry.functions.iter()
+    registry.functions.iter().chain(&registry.test_functions)
+}
+
+/// The method that `value { ... }` is short for, if a noun has it.
+pub fn called(noun: &Noun) -> Option<&Entry> {
+    noun.methods.iter().find(|m| m.short_name() == CALLED)
 }
 
 #[cfg(test)]

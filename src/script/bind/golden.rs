@@ -16,7 +16,7 @@ crate::params! {
     /// Expects the preview of a scene to be the golden picture `golden/NAME.png` beside the test.
     pub struct PreviewFields("Test:preview") {
         /// What `t:run` gave, or a scene.
-        scene: Value;
+        scene: Value, takes("TestScene|Scene");
         /// Name of the picture: letters, digits, `-` and `_`.
         name: String;
         /// How it is drawn and compared.

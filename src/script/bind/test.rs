@@ -26,7 +26,7 @@ crate::params! {
         /// What it shows, in a few words; unique within the file.
         name: String;
         /// Takes the Test, `t`, whose methods run styles and state what is expected.
-        body: Function;
+        body: Function, takes("(t: Test)");
     }
 }
 
@@ -108,7 +108,7 @@ crate::params! {
     /// Expects a function to raise an error.
     pub struct ErrorFields("Test:error") {
         /// Called without arguments.
-        body: Function;
+        body: Function, takes("(): any?");
         /// What the error must say, as a part of its message.
         text: Option<String>;
     }

@@ -37,7 +37,7 @@ crate::params! {
         /// The style's file.
         script: String;
         /// Parameters by name.
-        parameters: Option<Value>;
+        parameters: Option<Value>, takes("table<string, any>");
     }
 }
 
@@ -45,7 +45,7 @@ crate::params! {
     /// The same style with these parameters; `scene { length = 60 }` is short for it.
     pub struct WithFields("TestScene:with") {
         /// Parameters by name.
-        parameters: Value;
+        parameters: Value, takes("table<string, any>");
     }
 }
 
@@ -110,7 +110,7 @@ pub fn nouns() -> Vec<Noun> {
     ];
     let doc = "The scene of a style, in a test; its parts are reached by name: `scene.hair`, `scene.head`. The style is \
                run when its scene is first asked for.";
-    let lookup = Lookup { names: part_names, get: part };
+    let lookup = Lookup { returns: "TestPart", names: part_names, get: part };
     let style = Noun::of::<Style>(doc, methods, vec![], |h| {
         let script = h.get::<Style>().and_then(|s| s.wanted.as_ref().map(|o| o.script.display().to_string()));
         script.map_or_else(|| "scene".into(), |script| format!("scene of {script}"))

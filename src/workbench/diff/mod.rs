@@ -38,6 +38,8 @@ pub struct DiffOptions {
     pub view: Option<View>,
     /// Size and fineness of each of its three panels.
     pub sheet: SheetOptions,
+    /// List every strand that changed.
+    pub each: bool,
     /// Folder of the picture; none: no picture.
     pub out: Option<PathBuf>,
 }
@@ -51,6 +53,21 @@ pub struct Change {
     pub before: Option<String>,
     /// In the second; none when it is gone.
     pub after: Option<String>,
+}
+
+/// What became of one strand.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StrandChange {
+    /// Its id, 16 hexadecimal digits: a script's numbers, and JSON's, do not hold it.
+    pub id: String,
+    /// `added`, `removed` or `moved`.
+    pub what: &'static str,
+    /// Its root, cm.
+    pub root: [f32; 3],
+    /// Mean distance of its nodes, cm.
+    pub mean_distance: f32,
+    /// Greatest distance of a node, cm.
+    pub max_distance: f32,
 }
 
 /// What changed in a part.
@@ -80,6 +97,9 @@ pub struct PartChange {
     pub material: Vec<Change>,
     /// What else differs.
     pub other: Vec<Change>,
+    /// Every strand that changed, when they were asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub strands: Vec<StrandChange>,
 }
 
 /// Everything that changed.
@@ -153,7 +173,7 @@ fn compared(
     let mut moves = vec![];
     for name in names {
         let find = |s: &'_ Scene| s.parts.iter().find(|p| p.name == name).map(|p| p.body.clone());
-        let (change, of_part) = part(name, find(before).as_ref(), find(after).as_ref());
+        let (change, of_part) = part(name, find(before).as_ref(), find(after).as_ref(), options.each);
         changes.parts.push(change);
         moves.extend(of_part);
     }
@@ -220,7 +240,7 @@ pub(crate) struct Moves {
     strands: Vec<Moved>,
 }
 
-fn part(name: &str, before: Option<&Body>, after: Option<&Body>) -> (PartChange, Option<Moves>) {
+fn part(name: &str, before: Option<&Body>, after: Option<&Body>, each: bool) -> (PartChange, Option<Moves>) {
     let mut change = PartChange { part: name.to_owned(), state: "same", ..PartChange::default() };
     let hair = |body: Option<&Body>| if let Some(Body::Hair(hair)) = body { Some(hair.clone()) } else { None };
     let (a, b) = (hair(before), hair(after));
@@ -231,6 +251,9 @@ fn part(name: &str, before: Option<&Body>, after: Option<&Body>) -> (PartChange,
         let (old, new) = (strands(&a), strands(&b));
         let strands = matched(&old, &new);
         summarise(&mut change, &old, &new, &strands);
+        if each {
+            change.strands = strands.iter().filter_map(|m| listed(m, &old, &new)).collect();
+        }
         if let (Some(a), Some(b)) = (&a, &b) {
             change.material = material(&a.material, &b.material);
             note(&mut change.other, "guides", a.guides.count(), b.guides.count());
@@ -307,6 +330,22 @@ fn summarise(change: &mut PartChange, old: &Strands, new: &Strands, strands: &[M
         }
     }
     change.mean_distance = (sum / change.moved.max(1) as f64) as f32;
+}
+
+fn listed(moved: &Moved, old: &Strands, new: &Strands) -> Option<StrandChange> {
+    let (what, root) = match (moved.before, moved.after) {
+        (Some(i), Some(_)) => ("moved", &old.roots[i]),
+        (Some(i), None) => ("removed", &old.roots[i]),
+        (None, Some(j)) => ("added", &new.roots[j]),
+        (None, None) => return None,
+    };
+    Some(StrandChange {
+        id: format!("{:016x}", root.id),
+        what,
+        root: root.position.to_array(),
+        mean_distance: moved.mean,
+        max_distance: moved.most,
+    })
 }
 
 fn material(a: &HairMaterial, b: &HairMaterial) -> Vec<Change> {
