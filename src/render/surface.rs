@@ -185,7 +185,7 @@ fn draw_band(
             point += mix(&shell.mesh.positions);
             let facing = mix(&shell.mesh.normals);
             normal += if facing.dot(camera.toward) < -0.25 { -facing } else { facing };
-            tint += shell.tints.map_or_else(|| shell.skin.albedo(), |tints| mix(tints));
+            tint += shell.tints.map_or_else(|| shell.skin.albedo(), mix);
             skin = Some(shell.skin);
         }
         if let Some(skin) = skin {
