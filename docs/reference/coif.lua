@@ -395,7 +395,7 @@ function coif.queue(fields) end
 
 ---What `coif.tuft` takes.
 ---@class (exact) coif.tuft.fields
----@field stroke fun(coif.Point|coif.Head.point.fields)[] # Control points that the stroke runs through, the first on the head, in head space.
+---@field stroke (coif.Point|coif.Head.point.fields)[] # Control points that the stroke runs through, the first on the head, in head space.
 ---@field diameter? number # Greatest diameter. [mm; 1 to 100; default 30]
 ---@field peak? number # Where along the stroke the greatest diameter is. [%; 1 to 100; default 30]
 ---@field ellipse? coif.tuft.ellipse # An elliptic tuft instead of a round one; then `diameter` and `peak` do nothing.
@@ -457,7 +457,7 @@ function coif.material.tuft(fields) end
 
 ---What `coif.cap` takes.
 ---@class (exact) coif.cap.fields
----@field border? fun(coif.Point|coif.Head.point.fields)[] # Control points of the border on the head, in order around it; the natural hairline when left out.
+---@field border? (coif.Point|coif.Head.point.fields)[] # Control points of the border on the head, in order around it; the natural hairline when left out.
 ---@field crown? coif.Point # Where the hair parts to all sides; the top of the head when left out.
 ---@field thickness? number # Thickness of the hair on the head. [cm; 0.02 to 5; default 0.5]
 ---@field rim? number # Over how much of the way from the border to the crown the thickness grows. [0.01 to 1; default 0.25]
