@@ -118,6 +118,18 @@ function vector.max(v, ...) end
 ---@return string
 function typeof(value) end
 
+---The angle of the point (x, y), in radians.
+---@param y number
+---@param x number
+---@return number
+function math.atan2(y, x) end
+
+---`n` to the power of `exponent`.
+---@param n number
+---@param exponent number
+---@return number
+function math.pow(n, exponent) end
+
 ---`n` kept between two numbers.
 ---@param n number
 ---@param low number

@@ -118,6 +118,18 @@ function vector.max(v, ...) end
 ---@return string
 function typeof(value) end
 
+---The angle of the point (x, y), in radians.
+---@param y number
+---@param x number
+---@return number
+function math.atan2(y, x) end
+
+---`n` to the power of `exponent`.
+---@param n number
+---@param exponent number
+---@return number
+function math.pow(n, exponent) end
+
 ---`n` kept between two numbers.
 ---@param n number
 ---@param low number
@@ -383,11 +395,11 @@ function coif.queue(fields) end
 
 ---What `coif.tuft` takes.
 ---@class (exact) coif.tuft.fields
----@field stroke coif.Point[] # Control points that the stroke runs through, the first on the head, in head space.
+---@field stroke (coif.Point|coif.Head.point.fields)[] # Control points that the stroke runs through, the first on the head, in head space.
 ---@field diameter? number # Greatest diameter. [mm; 1 to 100; default 30]
 ---@field peak? number # Where along the stroke the greatest diameter is. [%; 1 to 100; default 30]
 ---@field ellipse? coif.tuft.ellipse # An elliptic tuft instead of a round one; then `diameter` and `peak` do nothing.
----@field profile? coif.Point[] # Sizes along the stroke instead of a round tuft: { place 0 to 1, width, thickness } each, in cm.
+---@field profile? coif.Point[]|fun(t: number): number, number? # Sizes along the stroke instead of a round tuft: { place 0 to 1, width, thickness } each, in cm.
 ---@field flatten? number # 0 leaves the thickness as it is, towards 1 makes the tuft flat. [0 to 0.95; default 0]
 ---@field twist? number # Turn about the stroke from root to tip. [degrees; -3600 to 3600; default 0]
 ---@field bend? number # Bends the width into an arc of this angle, edges towards the head. [degrees; -330 to 330; default 0]
@@ -445,7 +457,7 @@ function coif.material.tuft(fields) end
 
 ---What `coif.cap` takes.
 ---@class (exact) coif.cap.fields
----@field border? coif.Point[] # Control points of the border on the head, in order around it; the natural hairline when left out.
+---@field border? (coif.Point|coif.Head.point.fields)[] # Control points of the border on the head, in order around it; the natural hairline when left out.
 ---@field crown? coif.Point # Where the hair parts to all sides; the top of the head when left out.
 ---@field thickness? number # Thickness of the hair on the head. [cm; 0.02 to 5; default 0.5]
 ---@field rim? number # Over how much of the way from the border to the crown the thickness grows. [0.01 to 1; default 0.25]

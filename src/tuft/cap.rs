@@ -15,7 +15,7 @@ crate::params! {
     /// A cap of hair that lies on the scalp.
     pub struct CapOptions("coif.cap") {
         /// Control points of the border on the head, in order around it; the natural hairline when left out.
-        border: Vec<Vec3> = vec![];
+        border: Vec<Vec3> = vec![], takes("(Point|Head.point.fields)[]");
         /// Where the hair parts to all sides; the top of the head when left out.
         crown: Option<Vec3>;
         /// Thickness of the hair on the head.

@@ -25,7 +25,7 @@ crate::params! {
     /// A tuft of stylised hair along a stroke.
     pub struct TuftOptions("coif.tuft") {
         /// Control points that the stroke runs through, the first on the head, in head space.
-        stroke: Vec<Vec3>;
+        stroke: Vec<Vec3>, takes("(Point|Head.point.fields)[]");
         /// Greatest diameter.
         diameter: f32 = 30.0, unit("mm"), range(1.0, 100.0);
         /// Where along the stroke the greatest diameter is.
@@ -33,7 +33,7 @@ crate::params! {
         /// An elliptic tuft instead of a round one; then `diameter` and `peak` do nothing.
         ellipse: Option<Ellipse>;
         /// Sizes along the stroke instead of a round tuft: { place 0 to 1, width, thickness } each, in cm.
-        profile: Option<Vec<Vec3>>;
+        profile: Option<Vec<Vec3>>, takes("Point[]|fun(t: number): number, number?");
         /// 0 leaves the thickness as it is, towards 1 makes the tuft flat.
         flatten: f32 = 0.0, range(0.0, 0.95);
         /// Turn about the stroke from root to tip.

@@ -18,7 +18,7 @@ local function tuft(azimuth, d, peak)
 end
 local filled = coif.fill {
   tuft(50, 60, 40), tuft(-50, 36, 30),
-  around = p.around, up = if p.up > 0 then p.up else nil, down = if p.down > 0 then p.down else nil, jitter = p.jitter,
+  around = p.around, up = p.up > 0 and p.up or nil, down = p.down > 0 and p.down or nil, jitter = p.jitter,
 }
 print(filled.count)
 return coif.scene { head, filled, shading = "toon", views = { "front", "left", "back", "right" } }

@@ -8,15 +8,15 @@ local strokes = {
   { { 40, 0 }, { 50, 5 }, { 32, 10 }, { 44, 17 } },
   { { 40, 0 }, { 46, 8 }, { 30, 13 }, { 12, 8 } },
 }
-local all
+local all = nil ---@type any
 for i, shape in strokes do
   for k, look in { { 20, 20 }, { 45, 50 }, { 70, 80 } } do
     local azimuth, stroke = 90 * (i - 1) + 28 * (k - 2), {}
     for _, p in shape do
-      table.insert(stroke, { azimuth = azimuth, elevation = p[1], height = if p[2] > 0 then p[2] else nil })
+      table.insert(stroke, { azimuth = azimuth, elevation = p[1], height = p[2] > 0 and p[2] or nil })
     end
     local one = coif.tuft { stroke = stroke, diameter = look[1], peak = look[2], bury = true }
-    all = if all then all + one else one
+    all = all and all + one or one
   end
 end
 assert(all.count == 12)

@@ -79,12 +79,16 @@ pub fn annotated(registry: &Registry, text: &str) -> String {
 pub fn annotation(registry: &Registry, owner: &str, field: &Field) -> String {
     if let Some(takes) = field.takes {
         let takes = annotated(registry, takes);
-        return if takes.starts_with('(') { format!("fun{takes}") } else { takes };
+        return if is_function(&field.kind) { format!("fun{takes}") } else { takes };
     }
     match &field.kind {
         Kind::List(inner) if field.is_positional => kind(registry, owner, field, inner),
         other => kind(registry, owner, field, other),
     }
+}
+
+fn is_function(kind: &Kind) -> bool {
+    matches!(kind, Kind::Function)
 }
 
 fn kind(registry: &Registry, owner: &str, field: &Field, of: &Kind) -> String {
