@@ -374,6 +374,124 @@ function coif.domain.natural(fields) end
 ---@return coif.Queue
 function coif.queue(fields) end
 
+---An elliptic tuft instead of a round one; then `diameter` and `peak` do nothing.
+---@class (exact) coif.tuft.ellipse
+---@field horizontal number # Greatest radius across, along the head. [cm; 0.05 to 20]
+---@field vertical number # Greatest radius through, away from the head. [cm; 0.05 to 20]
+---@field alpha? number # Opens the root: 0 starts in a point. [0 to 10; default 0]
+---@field beta? number # Opens the tip: 0 ends in a point. [0 to 10; default 0]
+
+---What `coif.tuft` takes.
+---@class (exact) coif.tuft.fields
+---@field stroke coif.Point[] # Control points that the stroke runs through, the first on the head, in head space.
+---@field diameter? number # Greatest diameter. [mm; 1 to 100; default 30]
+---@field peak? number # Where along the stroke the greatest diameter is. [%; 1 to 100; default 30]
+---@field ellipse? coif.tuft.ellipse # An elliptic tuft instead of a round one; then `diameter` and `peak` do nothing.
+---@field profile? coif.Point[] # Sizes along the stroke instead of a round tuft: { place 0 to 1, width, thickness } each, in cm.
+---@field flatten? number # 0 leaves the thickness as it is, towards 1 makes the tuft flat. [0 to 0.95; default 0]
+---@field twist? number # Turn about the stroke from root to tip. [degrees; -3600 to 3600; default 0]
+---@field bend? number # Bends the width into an arc of this angle, edges towards the head. [degrees; -330 to 330; default 0]
+---@field tips? number # Number of tips. [whole; 1 to 8; default 1]
+---@field split? number # How much of the stroke the tips are apart. [0.05 to 0.9; default 0.3]
+---@field spread? number # How far the tips spread: 0 go side by side, 1 end twice as far apart. [-0.9 to 10; default 0.5]
+---@field up? coif.Direction # Where the thickness points; away from the head when left out.
+---@field plane? coif.Direction # Keeps the stroke in the plane through its root with this normal.
+---@field depth? number # How deep the start is buried in the head. [cm; 0.05 to 10; default 1]
+---@field tolerance? number # Greatest distance of the mesh from the true surface. [cm; 0.001 to 10; default 0.05]
+---@field rings? number # Number of rings along the stroke instead of `tolerance`; needs `sides`. [whole; 1 to 1000]
+---@field sides? number # Number of vertices around the tuft instead of `tolerance`; alone, rings stand at the control points. [whole; 3 to 400]
+---@field bury? boolean # Lets the tuft run through the head without a warning. [default false]
+---@field head? coif.Head # The head it grows on; needed only when the script made several.
+---@field material? coif.TuftMaterial|coif.material.tuft.fields|coif.Colour # Its look: `coif.material.tuft { ... }`, its fields, or a colour as "#6b432b".
+---@field lift? boolean # Moves control points outward where the tuft would run through the head. [default false]
+---@field dip? number # How deep it may lie in the head without a warning, as a fraction of its thickness there. [0 to 1; default 0.5]
+
+---A tuft of stylised hair along a stroke.
+---@param fields coif.tuft.fields
+---@return coif.Tufts
+function coif.tuft(fields) end
+
+---What `coif.fill` takes.
+---@class (exact) coif.fill.fields
+---@field around? number # Density from tuft to tuft. [1 to 100; default 50]
+---@field up? number # Density of rows towards the crown; none when left out. [1 to 100]
+---@field down? number # Density of rows towards the neck; none when left out. [1 to 100]
+---@field jitter? number # How far roots are strewn: 1 is up to 9 degrees in azimuth and elevation. [0 to 1; default 0]
+---@field seed? number # Another number strews the roots otherwise. [whole; default 0]
+---@field everywhere? boolean # Also where hair does not grow: on the face and low on the neck. [default false]
+---@field [integer] coif.Tufts # The tufts to fill between, in order, each with the same number of control points. From each to the next the fill goes about the head from left over back to right; a single tuft, or the same one twice, goes all the way around. They are part of the result.
+---@field lift? boolean # Moves control points outward where a tuft would run through the head. [default false]
+---@field dip? number # How deep a tuft may lie in the head without a warning, as a fraction of its thickness there. [0 to 1; default 0.5]
+
+---More tufts between given ones: around the head, and in rows towards crown and neck.
+---@param fields coif.fill.fields
+---@return coif.Tufts
+function coif.fill(fields) end
+
+---What `coif.material.tuft` takes.
+---@class (exact) coif.material.tuft.fields
+---@field colour? coif.Colour # Colour in the light. [default "#6b432b"]
+---@field tip_colour? coif.Colour # Colour towards the tip; `colour` when left out.
+---@field shade? coif.Colour # Colour in the shade, of toon shading; a darker `colour` when left out.
+---@field light? coif.Colour # Colour of the band of light, of toon shading; a lighter `colour` when left out.
+---@field ink? coif.Colour # Colour of the outline, of toon shading; a very dark `colour` when left out.
+---@field shine? number # Width and strength of the light: 0 none, 1 much. [0 to 1; default 0.5]
+---@field roughness? number # 0 mirror to 1 chalk, of soft shading and exported files. [0 to 1; default 0.5]
+
+---How stylised hair looks: its colours and its band of light.
+---@param fields? coif.material.tuft.fields
+---@return coif.TuftMaterial
+function coif.material.tuft(fields) end
+
+---What `coif.cap` takes.
+---@class (exact) coif.cap.fields
+---@field border? coif.Point[] # Control points of the border on the head, in order around it; the natural hairline when left out.
+---@field crown? coif.Point # Where the hair parts to all sides; the top of the head when left out.
+---@field thickness? number # Thickness of the hair on the head. [cm; 0.02 to 5; default 0.5]
+---@field rim? number # Over how much of the way from the border to the crown the thickness grows. [0.01 to 1; default 0.25]
+---@field refine? number # Rounds of halving each triangle; the method's own number is 2. [whole; 1 to 6; default 4]
+---@field smooth? boolean # Rounds the border off; a polygon between the control points when false. [default true]
+---@field head? coif.Head # The head it belongs to; needed only when the script made several.
+---@field material? coif.TuftMaterial|coif.material.tuft.fields|coif.Colour # Its look: `coif.material.tuft { ... }`, its fields, or a colour as "#6b432b".
+
+---A cap of hair that lies on the scalp.
+---@param fields? coif.cap.fields
+---@return coif.Piece
+function coif.cap(fields) end
+
+---What `coif.bun` takes.
+---@class (exact) coif.bun.fields
+---@field position coif.Point # Its middle.
+---@field axis? coif.Direction # From the head outward through its middle. [default { 0, 1, 0 }]
+---@field radius? number # Radius across the axis. [cm; 0.1 to 30; default 3]
+---@field length? number # Length along the axis; as long as wide when left out. [cm; 0.1 to 60]
+---@field grooves? number # Number of grooves; 0 for a smooth bun. [whole; 0 to 60; default 0]
+---@field groove_depth? number # Depth of the grooves as a fraction of the radius. [0 to 0.5; default 0.18]
+---@field swirl? number # How far the grooves wind about the axis from pole to pole. [degrees; -3600 to 3600; default 120]
+---@field tolerance? number # Greatest distance of the mesh from the true surface. [cm; 0.001 to 5; default 0.03]
+---@field head? coif.Head # The head it belongs to; needed only when the script made several.
+---@field material? coif.TuftMaterial|coif.material.tuft.fields|coif.Colour # Its look: `coif.material.tuft { ... }`, its fields, or a colour as "#6b432b".
+
+---A bun: a closed ball of hair, with grooves where its locks lie side by side.
+---@param fields coif.bun.fields
+---@return coif.Piece
+function coif.bun(fields) end
+
+---What `coif.ring` takes.
+---@class (exact) coif.ring.fields
+---@field at number # Place along the stroke: 0 root, 1 tip. [0 to 1]
+---@field width? number # Length along the stroke. [cm; 0.02 to 20; default 0.8]
+---@field thickness? number # How far it stands off the lock. [cm; 0.01 to 5; default 0.25]
+---@field shape? "round"|"flat" # A round cord or a flat ribbon. [default "round"]
+---@field sides? number # Vertices around the lock. [whole; 3 to 400; default 32]
+---@field [integer] coif.Tufts # The tufts to put a ring around, each its own.
+---@field material? coif.TuftMaterial|coif.material.tuft.fields|coif.Colour # Its look: `coif.material.tuft { ... }`, its fields, or a colour as "#6b432b".
+
+---A ring or ribbon around a lock.
+---@param fields coif.ring.fields
+---@return coif.Piece
+function coif.ring(fields) end
+
 ---What `coif.material.hair` takes.
 ---@class (exact) coif.material.hair.fields
 ---@field root_colour? coif.Colour # Colour at the root. [default "#2e1b12"]
@@ -394,6 +512,7 @@ function coif.material.hair(fields) end
 ---@field [integer] any # The head and the hair, in any number and order; lists in the list are taken apart.
 ---@field views? ("front"|"back"|"left"|"right"|"top"|"three-quarter"|"back-three-quarter")[] # The views of the preview, in order. [default { "front", "left", "back" }]
 ---@field background? "white"|"dark" # The colour behind everything. [default "white"]
+---@field shading? "soft"|"toon" # How surfaces and light are drawn. [default "soft"]
 ---@field skin? coif.Colour # Colour of the head. [default "#d9b8a3"]
 
 ---Puts together what the pictures and files show. A script ends with `return coif.scene { head, hair }`.
@@ -646,6 +765,63 @@ local Domain = {}
 ---Domains in stages; a stage acts when the one before it has let go.
 ---@class coif.Queue
 local Queue = {}
+
+---Locks of stylised hair on a head.
+---@class coif.Tufts
+---@field count number # How many tufts.
+---@operator add(coif.Tufts): coif.Tufts
+local Tufts = {}
+
+---Both tufts and others of the same head; also written `a + b`. What is in both is there once.
+---@param other coif.Tufts # The others.
+---@return coif.Tufts
+function Tufts:union(other) end
+
+---All tufts on the head's other side.
+---@return coif.Tufts
+function Tufts:mirrored() end
+
+---What `Tufts:rotated` takes.
+---@class (exact) coif.Tufts.rotated.fields
+---@field angle number # By how much. [degrees; -3600 to 3600]
+---@field axis? coif.Direction # About which direction; straight out of the skin at the root when left out.
+
+---Each tuft turned about its own root.
+---@param fields coif.Tufts.rotated.fields
+---@return coif.Tufts
+function Tufts:rotated(fields) end
+
+---What `Tufts:array` takes.
+---@class (exact) coif.Tufts.array.fields
+---@field count number # How many there are of each then. [whole; 1 to 1000]
+---@field step number # From one to the next. [degrees; -360 to 360]
+---@field axis? coif.Direction # The axis through the middle of the skull that they are turned about. [default { 0, 1, 0 }]
+
+---Each tuft several times, set around the head with its roots on the skin.
+---@param fields coif.Tufts.array.fields
+---@return coif.Tufts
+function Tufts:array(fields) end
+
+---The same tufts with another look.
+---@param material coif.TuftMaterial|coif.material.tuft.fields|coif.Colour # `coif.material.tuft { ... }`, its fields, or a colour.
+---@return coif.Tufts
+function Tufts:material(material) end
+
+---Figures: `tufts`, `triangles`, `mean_length`, `longest`, `shortest` (cm along the stroke, with the buried
+---start), `dips` (places that lie too deep in the head), `deepest` (cm, of these), `min` and `max` (corners of the
+---bounding box).
+---@return table<string, any>
+function Tufts:stats() end
+
+---How stylised hair looks; made by `coif.material.tuft`.
+---@class coif.TuftMaterial
+local TuftMaterial = {}
+
+---A cap, a bun or a ring of stylised hair.
+---@class coif.Piece
+---@field kind string # `cap`, `bun` or `ring`.
+---@field triangles number # How many triangles it has.
+local Piece = {}
 
 ---How hair looks; made by `coif.material.hair`.
 ---@class coif.HairMaterial
