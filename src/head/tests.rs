@@ -238,7 +238,11 @@ fn the_mannequins_are_heads_and_their_shapes_tell_their_landmarks() {
         for (name, (a, b)) in Landmarks::NAMES.iter().zip(found.landmarks.all().into_iter().zip(given.landmarks.all()))
         {
             // Where the hairline runs on a large skull with a small face is the artist's choice, not the shape's.
-            let limit = if style == mannequin::Style::Cartoon && (*name == "forehead" || name.ends_with("temple")) { 6.0 } else { 3.0 };
+            let limit = if style == mannequin::Style::Cartoon && (*name == "forehead" || name.ends_with("temple")) {
+                6.0
+            } else {
+                3.0
+            };
             near(back.transform_point3(a), b, limit, &format!("{name} of {}", style.text()));
         }
     }

@@ -177,9 +177,9 @@ impl Tile {
             let block = |x: f32| (((x - origin as f32) / BLOCK as f32).max(0.0) as usize).min(BLOCKS - 1);
             block(a.min(b) - margin)..=block(a.max(b) + margin)
         };
-        let (columns, rows) = (range(a.x, b.x, self.x0), range(a.y, b.y, self.y0));
+        let (columns, mut rows) = (range(a.x, b.x, self.x0), range(a.y, b.y, self.y0));
         let across = columns.fold(0_u16, |bits, x| bits | 1 << x);
-        rows.fold(true, |hidden, y| hidden && (self.finished >> (y * BLOCKS)) & across == across)
+        rows.all(|y| (self.finished >> (y * BLOCKS)) & across == across)
     }
 
     /// Notes that pixel `i` is finished.

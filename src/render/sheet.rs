@@ -312,8 +312,10 @@ impl Stage {
         task.progress("light", 0.0);
         let studio = Studio::new(&fine, &self.density, &meshes, &self.sky);
         task.check()?;
-        let shell = |(mesh, skin, tints): &'a (Mesh, Skin, Option<Vec<Vec3>>)| {
-            Shell { mesh, skin: *skin, tints: tints.as_deref() }
+        let shell = |(mesh, skin, tints): &'a (Mesh, Skin, Option<Vec<Vec3>>)| Shell {
+            mesh,
+            skin: *skin,
+            tints: tints.as_deref(),
         };
         let shells: Vec<Shell> = self.meshes.iter().map(shell).collect();
         task.progress("head", 0.2);

@@ -87,13 +87,7 @@ pub(super) fn faces<'a>(
 }
 
 /// What is nearest in each sample of `rows` rows from `top` on, [`SAMPLES`] per pixel: depths and indices into `faces`.
-pub(super) fn nearest(
-    faces: &[Face],
-    list: &[u32],
-    width: usize,
-    top: usize,
-    rows: usize,
-) -> (Vec<f32>, Vec<u32>) {
+pub(super) fn nearest(faces: &[Face], list: &[u32], width: usize, top: usize, rows: usize) -> (Vec<f32>, Vec<u32>) {
     let n = SAMPLES.len();
     let mut depth = vec![f32::NEG_INFINITY; width * rows * n];
     let mut owner = vec![u32::MAX; width * rows * n];
@@ -191,7 +185,7 @@ fn draw_band(
             point += mix(&shell.mesh.positions);
             let facing = mix(&shell.mesh.normals);
             normal += if facing.dot(camera.toward) < -0.25 { -facing } else { facing };
-            tint += shell.tints.map_or_else(|| shell.skin.albedo(), |tints| mix(tints));
+            tint += shell.tints.map_or_else(|| shell.skin.albedo(), mix);
             skin = Some(shell.skin);
         }
         if let Some(skin) = skin {

@@ -212,8 +212,12 @@ impl Toon {
         let (width, n) = (camera.width, SAMPLES.len());
         let (depth, owner) = surface::nearest(faces, list, width, top, rows);
         let count = width * rows;
-        let mut layer =
-            Layer { width, depth: vec![f32::NEG_INFINITY; count], cover: vec![0.0; count], colour: vec![Vec3::ZERO; count] };
+        let mut layer = Layer {
+            width,
+            depth: vec![f32::NEG_INFINITY; count],
+            cover: vec![0.0; count],
+            colour: vec![Vec3::ZERO; count],
+        };
         let mut seen = vec![UNSEEN; count];
         for i in 0..count {
             let owners = &owner[i * n..(i + 1) * n];
@@ -222,7 +226,9 @@ impl Toon {
             }
             let pixel = Vec2::new((i % width) as f32, (top + i / width) as f32);
             // The samples of each lock are shaded together, once.
-            let id = |o: u32| faces.get(o as usize).map(|f| [f.shell, self.figures[f.shell as usize].lock(f.triangle as usize)]);
+            let id = |o: u32| {
+                faces.get(o as usize).map(|f| [f.shell, self.figures[f.shell as usize].lock(f.triangle as usize)])
+            };
             let ids: [Option<[u32; 2]>; 4] = std::array::from_fn(|s| id(owners[s]));
             let (mut most, mut z, mut hits) = (0, f32::NEG_INFINITY, 0);
             for s in 0..n {

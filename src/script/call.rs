@@ -161,8 +161,7 @@ impl Call<'_> {
         reader.reject_unknown(table, &fields, self.entry.name);
         let part = |own: Vec<params::Field>| Table {
             items: if own.iter().any(|f| f.is_positional) { table.items.clone() } else { vec![] },
-            fields: own.iter().filter_map(|f| Some((f.name.to_owned(), table.fields.get(f.name)?.clone())))
-                .collect(),
+            fields: own.iter().filter_map(|f| Some((f.name.to_owned(), table.fields.get(f.name)?.clone()))).collect(),
         };
         let both = (A::read(&part(A::fields()), &mut reader), B::read(&part(B::fields()), &mut reader));
         let problems = reader.problems();

@@ -153,9 +153,7 @@ impl Runner<'_> {
                 | RunError::Export(_)
                 | RunError::Budget(_)
                 | RunError::Write(_)),
-            ) => {
-                Err(Some(Shown::message(error.to_string())))
-            }
+            ) => Err(Some(Shown::message(error.to_string()))),
         }
     }
 

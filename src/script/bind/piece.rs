@@ -79,7 +79,8 @@ pub fn noun() -> Noun {
         },
     ];
     Noun::of::<Piece>("A cap, a bun or a ring of stylised hair.", vec![], getters, |h| {
-        h.get::<Piece>().map_or_else(String::new, |p| format!("{} of {} triangles", p.kind.text(), p.mesh.triangles.len()))
+        h.get::<Piece>()
+            .map_or_else(String::new, |p| format!("{} of {} triangles", p.kind.text(), p.mesh.triangles.len()))
     })
 }
 

@@ -103,7 +103,8 @@ fn scene(call: &Call) -> Result<Value> {
         if !heads.is_empty() && !heads.iter().any(|h| Arc::ptr_eq(h, piece.head())) {
             let (what, source) = piece.made();
             let verb = if what == "tufts" { "grow" } else { "grows" };
-            let warning = Warning::new(format!("the {what} made at {source} {verb} on a head that is not in the scene"));
+            let warning =
+                Warning::new(format!("the {what} made at {source} {verb} on a head that is not in the scene"));
             call.warn("", warning.hint("make the head once and use it for everything: `local head = coif.head()`"));
         }
     }

@@ -46,7 +46,11 @@ pub struct TuftLook(pub TuftMaterial);
 
 impl FieldType for TuftLook {
     fn kind() -> Kind {
-        Kind::OneOf(vec![Kind::Object(<TuftMaterial as Object>::NAME), Kind::Struct("coif.material.tuft"), Colour::kind()])
+        Kind::OneOf(vec![
+            Kind::Object(<TuftMaterial as Object>::NAME),
+            Kind::Struct("coif.material.tuft"),
+            Colour::kind(),
+        ])
     }
     fn read(value: &Value, reader: &mut Reader) -> Option<Self> {
         match value {
@@ -212,7 +216,8 @@ impl Wig {
             })
             .collect();
         let known = |t: &Tuft| {
-            let same = |k: &Tuft| k.stroke == t.stroke && k.section == t.section && k.up == t.up && k.colour == t.colour;
+            let same =
+                |k: &Tuft| k.stroke == t.stroke && k.section == t.section && k.up == t.up && k.colour == t.colour;
             self.tufts.tufts.iter().any(same)
         };
         let fresh: Vec<Tuft> = other
@@ -360,7 +365,8 @@ pub fn points_of(call: &Call, head: &Head, path: &str, items: &mut [Value]) -> R
         if !["azimuth", "elevation", "height"].iter().any(|k| table.fields.contains_key(*k)) {
             continue;
         }
-        let read = reader.inside(path, |r| r.inside(format!("[{}]", i + 1), |r| <PointFields as Params>::read(table, r)));
+        let read =
+            reader.inside(path, |r| r.inside(format!("[{}]", i + 1), |r| <PointFields as Params>::read(table, r)));
         if let Some(p) = read {
             *item = Value::Vector(head.point(p.azimuth.radians, p.elevation.radians, p.height));
         }

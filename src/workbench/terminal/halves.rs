@@ -11,8 +11,8 @@ pub fn encode(pixels: &Pixels, is_true_colour: bool) -> Vec<u8> {
     for rows in pixels.rgb.chunks(width * 2) {
         let (upper, lower) = rows.split_at(width);
         let mut last = None;
-        for x in 0..width {
-            let colours = (upper[x], lower.get(x).copied());
+        for (x, &pixel) in upper.iter().enumerate() {
+            let colours = (pixel, lower.get(x).copied());
             if last != Some(colours) {
                 let _ = write!(out, "\x1b[38;{}", colour(colours.0, is_true_colour));
                 let _ = match colours.1 {
