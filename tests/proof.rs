@@ -317,6 +317,32 @@ coif.test("a", function(t) end)"#;
 }
 
 #[test]
+fn locks_are_compared_too() {
+    let bob = include_str!("../examples/cartoon/bob.lua");
+    let longer = bob.replace("length = { 1,", "length = { 1.3,");
+    let red = bob.replace("#7b3f8c", "#c02020");
+    assert!(longer != bob && red != bob);
+    let dir = folder(&[("a.lua", bob), ("longer.lua", &longer), ("red.lua", &red)]);
+    let changed = |b: &str| {
+        let (code, out, err) = coif(dir.path(), &["diff", "a.lua", b, "--json", "--size", "48"]);
+        assert_eq!(code, 0, "{err}");
+        serde_json::from_str::<serde_json::Value>(&out).unwrap()
+    };
+    let sum = |v: &serde_json::Value, what: &str| -> u64 {
+        v["parts"].as_array().unwrap().iter().map(|p| p[what].as_u64().unwrap()).sum()
+    };
+    let longer = changed("longer.lua");
+    // The bob's locks move, the fringe stays.
+    assert!(sum(&longer, "moved") > 0 && sum(&longer, "moved") < sum(&longer, "locks_after"), "{longer}");
+    assert_eq!((sum(&longer, "added"), sum(&longer, "removed")), (0, 0), "{longer}");
+    let red = changed("red.lua");
+    assert_eq!(sum(&red, "moved") + sum(&red, "added") + sum(&red, "removed"), 0, "{red}");
+    let looks = |p: &serde_json::Value| p["material"].as_array().unwrap().iter().any(|c| c["after"] == "#c02020");
+    assert!(red["parts"].as_array().unwrap().iter().any(looks), "{red}");
+    assert_eq!(changed("a.lua")["same"], true);
+}
+
+#[test]
 fn comparisons_tell_what_changed() {
     let more = STYLE.replace("strands = 120", "strands = 150");
     let longer = STYLE.replace("length = { 4,", "length = { 6,").replace("width = 0.2", "width = 0.3");

@@ -108,8 +108,13 @@ fn part_change(part: &PartChange) -> String {
         let all = [("added", part.added), ("removed", part.removed), ("moved", part.moved)];
         let all: Vec<String> =
             all.iter().filter(|(_, n)| *n > 0).map(|(what, n)| format!("{} {what}", thousands(*n))).collect();
-        let (a, b) = (thousands(part.strands_before), thousands(part.strands_after));
-        let _ = writeln!(out, "  strands: {a} -> {b}; {}", all.join(", "));
+        let is_strands = part.strands_before + part.strands_after > 0;
+        let (what, a, b) = if is_strands {
+            ("strands", part.strands_before, part.strands_after)
+        } else {
+            ("locks", part.locks_before, part.locks_after)
+        };
+        let _ = writeln!(out, "  {what}: {} -> {}; {}", thousands(a), thousands(b), all.join(", "));
     }
     if part.moved > 0 {
         let _ = write!(out, "  moved by {:.3} cm on average, {:.3} cm at most", part.mean_distance, part.max_distance);

@@ -3,6 +3,7 @@
 //! Strands are matched by their ids, which say where a root lies: moving a domain moves strands, it does not make new
 //! ones.
 
+mod locks;
 mod picture;
 
 use std::collections::BTreeMap;
@@ -81,17 +82,21 @@ pub struct PartChange {
     pub strands_before: usize,
     /// Strands in the second.
     pub strands_after: usize,
-    /// Strands whose id only the second has.
+    /// Locks of stylised hair in the first.
+    pub locks_before: usize,
+    /// Locks of stylised hair in the second.
+    pub locks_after: usize,
+    /// Strands or locks whose id only the second has.
     pub added: usize,
-    /// Strands whose id only the first has.
+    /// Strands or locks whose id only the first has.
     pub removed: usize,
-    /// Strands of both that do not lie where they lay.
+    /// Strands or locks of both that do not lie where they lay.
     pub moved: usize,
-    /// Mean over the moved strands of their mean distances, cm.
+    /// Mean over those that moved of their mean distances, cm.
     pub mean_distance: f32,
     /// The farthest that any node moved, cm.
     pub max_distance: f32,
-    /// Root of the strand that moved farthest, cm.
+    /// Root of the strand, or of the lock, that moved farthest, cm.
     pub farthest: Option<[f32; 3]>,
     /// Values of its material that differ.
     pub material: Vec<Change>,
@@ -260,6 +265,14 @@ fn part(name: &str, before: Option<&Body>, after: Option<&Body>, each: bool) -> 
         }
         moves = Some(Moves { part: name.to_owned(), strands });
     }
+    let stylised =
+        |body: Option<&'_ Body>| if let Some(Body::Locks(locks)) = body { Some(locks.clone()) } else { None };
+    let (a, b) = (stylised(before), stylised(after));
+    if a.is_some() || b.is_some() {
+        let changed = locks::matched(a.as_ref(), b.as_ref());
+        locks::summarise(&mut change, a.as_ref(), b.as_ref(), &changed);
+        moves = Some(Moves { part: name.to_owned(), strands: changed });
+    }
     if let (Some(Body::Mesh(a, look_a)), Some(Body::Mesh(b, look_b))) = (before, after) {
         note(&mut change.other, "triangles", a.triangles.len(), b.triangles.len());
         note(&mut change.material, "colour", look_a.colour, look_b.colour);
@@ -314,22 +327,29 @@ fn distance(a: &[Vec3], b: &[Vec3]) -> (f32, f32) {
 fn summarise(change: &mut PartChange, old: &Strands, new: &Strands, strands: &[Moved]) {
     change.strands_before = old.count();
     change.strands_after = new.count();
-    let mut sum = 0.0_f64;
-    for moved in strands {
-        match (moved.before, moved.after) {
-            (Some(i), Some(_)) => {
-                change.moved += 1;
-                sum += f64::from(moved.mean);
-                if moved.most > change.max_distance {
-                    change.max_distance = moved.most;
-                    change.farthest = Some(old.roots[i].position.to_array());
+    change.count(strands, |moved| moved.before.map(|i| old.roots[i].position.to_array()));
+}
+
+impl PartChange {
+    /// Counts and distances of what changed; `root` tells where a strand or a lock of the first grows.
+    fn count(&mut self, all: &[Moved], root: impl Fn(&Moved) -> Option<[f32; 3]>) {
+        let mut sum = 0.0_f64;
+        for moved in all {
+            match (moved.before, moved.after) {
+                (Some(_), Some(_)) => {
+                    self.moved += 1;
+                    sum += f64::from(moved.mean);
+                    if moved.most > self.max_distance {
+                        self.max_distance = moved.most;
+                        self.farthest = root(moved);
+                    }
                 }
+                (Some(_), None) => self.removed += 1,
+                (None, _) => self.added += 1,
             }
-            (Some(_), None) => change.removed += 1,
-            (None, _) => change.added += 1,
         }
+        self.mean_distance = (sum / self.moved.max(1) as f64) as f32;
     }
-    change.mean_distance = (sum / change.moved.max(1) as f64) as f32;
 }
 
 fn listed(moved: &Moved, old: &Strands, new: &Strands) -> Option<StrandChange> {

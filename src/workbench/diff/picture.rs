@@ -7,8 +7,9 @@ use crate::geometry::Strands;
 use crate::math::Colour;
 use crate::render::camera::{axes, frame};
 use crate::render::{Cell, Picture, RenderError, contact, views};
-use crate::scene::{Body, Hair, HairMaterial, Part, Scene, View};
+use crate::scene::{Body, Hair, HairMaterial, Locks, Part, Scene, TuftMaterial, View};
 use crate::task::Task;
+use crate::tuft::{Tuft, Tufts};
 
 /// Strands that only the first has.
 const REMOVED: u32 = 0xd1_2f_3a;
@@ -64,9 +65,16 @@ fn coloured(before: &Scene, after: &Scene, changes: &Changes, moves: &[Moves]) -
         let hair = |s: &'_ Scene| {
             s.parts.iter().find(|p| p.name == of_part.part).and_then(|p| match &p.body {
                 Body::Hair(hair) => Some(hair.clone()),
-                _ => None,
+                Body::Mesh(..) | Body::Locks(_) => None,
             })
         };
+        let locks = |s: &'_ Scene| {
+            s.parts.iter().find(|p| p.name == of_part.part).and_then(|p| match &p.body {
+                Body::Locks(locks) => Some(locks.clone()),
+                Body::Mesh(..) | Body::Hair(_) => None,
+            })
+        };
+        scene.parts.extend(coloured_locks(locks(before), locks(after), &of_part.strands, most));
         let (old, new) = (hair(before), hair(after));
         let look = new.as_ref().or(old.as_ref()).map(|h| h.material.clone()).unwrap_or_default();
         let mut add = |strands: Strands, colour: u32| {
@@ -94,6 +102,34 @@ fn coloured(before: &Scene, after: &Scene, changes: &Changes, moves: &[Moves]) -
         }
     }
     scene
+}
+
+/// The locks of both, coloured by what became of them.
+fn coloured_locks(old: Option<Locks>, new: Option<Locks>, moves: &[Moved], most: f32) -> Vec<Part> {
+    let look = |colour: u32| TuftMaterial { colour: Colour::hex(colour), ..TuftMaterial::default() };
+    let palette: Vec<TuftMaterial> =
+        [SAME, REMOVED, ADDED].into_iter().chain(MOVED.map(|(_, colour)| colour)).map(look).collect();
+    // Per lock its colour in the palette, or none where it is not to be seen.
+    let of_new = |i: usize| match moves.iter().find(|m| m.after == Some(i)) {
+        None => Some(0),
+        Some(Moved { before: None, .. }) => Some(2),
+        Some(moved) => Some(3 + MOVED.iter().position(|(f, _)| moved.most <= f * most).unwrap_or(2)),
+    };
+    let of_old = |i: usize| moves.iter().any(|m| m.before == Some(i) && m.after.is_none()).then_some(1);
+    let repaint = |locks: Locks, colour: &dyn Fn(usize) -> Option<usize>| {
+        if locks.tufts.count() == 0 {
+            return colour(0).map(|c| Locks { palette: vec![palette[c].clone()], ..locks });
+        }
+        let mut tufts = Tufts::clone(&locks.tufts);
+        let colours: Vec<Option<usize>> = (0..tufts.tufts.len()).map(colour).collect();
+        let kept =
+            tufts.tufts.into_iter().zip(colours).filter_map(|(tuft, c)| Some(Tuft { colour: c? as u32, ..tuft }));
+        tufts.tufts = kept.collect();
+        (!tufts.tufts.is_empty()).then(|| Locks::tufts(Arc::new(tufts), palette.clone()))
+    };
+    let both = [old.and_then(|l| repaint(l, &of_old)), new.and_then(|l| repaint(l, &of_new))];
+    let part = |locks| Part { name: String::new(), source: String::new(), body: Body::Locks(locks) };
+    both.into_iter().flatten().map(part).collect()
 }
 
 /// Some of the strands.
