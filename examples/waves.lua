@@ -11,7 +11,6 @@ local p = coif.params {
 local head    = coif.head()
 local parting = head:parting { head:at("forehead", { 3, 0, 0 }), head:at("vertex", { 2.5, 0, 0 }), head:at("vertex", { 0.5, -1, -4 }) }
 local crown   = head:at("vertex", { 0, -5, 0 }).y
-local brow    = head:at("left_temple").y
 
 -- off the parting: one local queue for each side, on the top of the head
 local function side(sign)
