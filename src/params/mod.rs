@@ -35,7 +35,7 @@ pub use read::{FieldType, Problem, Reader, nearest, read};
 pub use types::{Angle, Direction, Function};
 pub use value::{Handle, Object, Table, Value};
 
-/// Declares a parameter struct and everything derived from it; see the [module](crate::params) for an example.
+/// Declares a parameter struct and everything derived from it; see the [module](mod@crate::params) for an example.
 ///
 /// `field: Type;` is required, `field: Type = default;` has a default, `field: Option<Type>;` may be left out. After
 /// that, in any order: `unit("cm")`, `range(lo, hi)` (both included), `positional()` (the list part of the table), and for

@@ -3,7 +3,7 @@
 //! [`sheet()`] does everything; it sees only a [`Scene`](crate::scene::Scene). The way of the data: [`camera`] frames the
 //! views; [`shadow`] finds how much light reaches each place; [`surface`] draws the head, [`toon`] draws it in flat tones with ink lines; [`strands`] projects and
 //! simplifies the hair, [`raster`] lays it down front to back, [`shade`] gives it colour; [`overlay`] makes the debug
-//! view; [`lettering`] writes; [`png`] codes. [`contact`] lays pictures out, [`compare`] tells how far two differ.
+//! view; [`lettering`] writes; [`png`] codes. [`mod@contact`] lays pictures out, [`mod@compare`] tells how far two differ.
 
 pub mod camera;
 pub mod compare;

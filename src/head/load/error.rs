@@ -191,7 +191,7 @@ pub enum GltfProblem {
     /// More bytes than there are.
     #[error("reaches to byte `{end}` of {what} with {length} bytes")]
     Range {
-        /// "bufferViews[2]", "buffers[0]".
+        /// `bufferViews[2]`, `buffers[0]`.
         what: String,
         /// One past the last byte.
         end: u64,
