@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use serde_json::json;
 
-use super::text::{milliseconds, size, thousands};
+use super::text::{milliseconds, size};
+use crate::render::sheet::grouped;
 use crate::script::show_all;
 use crate::workbench::Written;
 use crate::workbench::diff::{Change, Changes, PartChange};
@@ -66,7 +67,7 @@ pub fn test_summary(report: &TestReport) -> String {
         if report.is_passed() { "ok" } else { "not ok" },
         report.results.len(),
         parts.join(", "),
-        thousands(checks),
+        grouped(checks),
         milliseconds(time)
     );
     if !report.accepted.is_empty() {
@@ -107,14 +108,14 @@ fn part_change(part: &PartChange) -> String {
     if part.added + part.removed + part.moved > 0 {
         let all = [("added", part.added), ("removed", part.removed), ("moved", part.moved)];
         let all: Vec<String> =
-            all.iter().filter(|(_, n)| *n > 0).map(|(what, n)| format!("{} {what}", thousands(*n))).collect();
+            all.iter().filter(|(_, n)| *n > 0).map(|(what, n)| format!("{} {what}", grouped(*n))).collect();
         let is_strands = part.strands_before + part.strands_after > 0;
         let (what, a, b) = if is_strands {
             ("strands", part.strands_before, part.strands_after)
         } else {
             ("locks", part.locks_before, part.locks_after)
         };
-        let _ = writeln!(out, "  {what}: {} -> {}; {}", thousands(a), thousands(b), all.join(", "));
+        let _ = writeln!(out, "  {what}: {} -> {}; {}", grouped(a), grouped(b), all.join(", "));
     }
     if part.moved > 0 {
         let _ = write!(out, "  moved by {:.3} cm on average, {:.3} cm at most", part.mean_distance, part.max_distance);

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
+use crate::render::sheet::grouped;
 use crate::script::{Origin, Outcome};
 use crate::workbench::{Report, Stage, Written};
 
@@ -18,25 +19,25 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
             0 => writeln!(
                 out,
                 "{name:>8}  {} strands, {} points, {} guides; {:.1} cm long on average, {:.1} cm at most",
-                thousands(part.strands),
-                thousands(part.points),
-                thousands(part.guides),
+                grouped(part.strands),
+                grouped(part.points),
+                grouped(part.guides),
                 part.mean_length,
                 part.longest,
             ),
             triangles if part.tufts > 0 => writeln!(
                 out,
                 "{name:>8}  {} tufts, {} triangles; {:.1} cm long on average, {:.1} cm at most",
-                thousands(part.tufts),
-                thousands(triangles),
+                grouped(part.tufts),
+                grouped(triangles),
                 part.mean_length,
                 part.longest,
             ),
-            triangles => writeln!(out, "{name:>8}  {} triangles", thousands(triangles)),
+            triangles => writeln!(out, "{name:>8}  {} triangles", grouped(triangles)),
         };
     }
     if let Some(budget) = &report.budget {
-        let (before, after) = (thousands(budget.before), thousands(budget.after));
+        let (before, after) = (grouped(budget.before), grouped(budget.after));
         let _ = match budget.tolerance {
             Some(tolerance) => writeln!(
                 out,
@@ -169,19 +170,6 @@ fn plain(value: &crate::params::Value) -> Value {
     }
 }
 
-/// `40,000`.
-pub(super) fn thousands(n: usize) -> String {
-    let digits = n.to_string();
-    let mut out = String::new();
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(c);
-    }
-    out
-}
-
 /// `412 ms`, `3.2 s`.
 pub(super) fn milliseconds(time: Duration) -> String {
     let seconds = time.as_secs_f64();
@@ -209,9 +197,9 @@ mod tests {
 
     #[test]
     fn figures_read_well() {
-        assert_eq!(thousands(0), "0");
-        assert_eq!(thousands(999), "999");
-        assert_eq!(thousands(2_560_000), "2,560,000");
+        assert_eq!(grouped(0), "0");
+        assert_eq!(grouped(999), "999");
+        assert_eq!(grouped(2_560_000), "2,560,000");
         assert_eq!(milliseconds(Duration::from_micros(2_340)), "2.3 ms");
         assert_eq!(milliseconds(Duration::from_millis(1_234)), "1234 ms");
         assert_eq!(size(41_234_567), "41.2 MB");

@@ -89,7 +89,7 @@ impl Head {
         for (name, place) in mannequin::landmarks(style) {
             marks = marks.with(name, place);
         }
-        Self::with_landmarks(mannequin::mesh(style), style.text(), marks)
+        Self::with_landmarks(mannequin::mesh(style), "mannequin", marks)
     }
 
     /// A head from any upright mesh in cm that looks to +Z, give or take 45 degrees. `overrides` are landmarks by

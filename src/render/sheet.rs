@@ -486,8 +486,8 @@ fn figures(scene: &Scene) -> String {
     if words.is_empty() { format!("no {what}") } else { words.join(" · ") }
 }
 
-/// A number with a thin mark between thousands.
-fn grouped(n: usize) -> String {
+/// A number with a mark between thousands: `40,000`.
+pub fn grouped(n: usize) -> String {
     let digits = n.to_string();
     let mut out = String::new();
     for (i, c) in digits.chars().enumerate() {

@@ -15,7 +15,7 @@ use super::super::session::Session;
 use super::region::Area;
 use crate::geometry::OrientedBox;
 use crate::head::load::{self, Axis, FileBytes, LoadError, LoadOptions, Unit};
-use crate::head::mannequin::{self, Style};
+use crate::head::mannequin::Style;
 use crate::head::{Head, HeadError, Landmarks, Parting, Region};
 use crate::math::Digest;
 use crate::params::{Angle, Handle, Object, Table, Value};
@@ -248,9 +248,7 @@ fn built_in(call: &Call, style: Style) -> Result<Arc<Head>> {
     if let Some(head) = made.get() {
         return Ok(Arc::clone(head));
     }
-    let places = mannequin::landmarks(style);
-    let landmarks = places.iter().fold(Landmarks::from_all([Vec3::ZERO; 9]), |l, (name, p)| l.with(name, *p));
-    let head = Head::with_landmarks(mannequin::mesh(style), "mannequin", landmarks);
+    let head = Head::mannequin(style);
     let head = Arc::new(head.map_err(|e| head_error(call, "style", &e))?);
     Ok(Arc::clone(made.get_or_init(|| head)))
 }
