@@ -150,6 +150,11 @@ impl AccessError {
     }
 }
 
+/// True when a tidy path lies at or below a tidy folder. The working folder is an empty path, which everything starts with.
+fn is_below(path: &Path, folder: &Path) -> bool {
+    if folder.as_os_str().is_empty() { path.is_relative() && !path.starts_with("..") } else { path.starts_with(folder) }
+}
+
 /// Largest file that a script may read, bytes.
 const LARGEST_FILE: usize = 1 << 30;
 
@@ -184,7 +189,7 @@ impl Access {
     pub fn read(&self, path: &Path) -> Result<Vec<u8>, AccessError> {
         let path = tidy(path);
         // By text first: the answer to "is there a file outside?" must not depend on whether there is.
-        if !self.allowed.iter().any(|a| path.starts_with(tidy(a))) && !self.is_below_resolved(&path) {
+        if !self.allowed.iter().any(|a| is_below(&path, &tidy(a))) && !self.is_below_resolved(&path) {
             return Err(AccessError::Outside(path));
         }
         if let Ok(mut asked) = self.asked.lock() {
@@ -208,7 +213,7 @@ impl Access {
 
     /// True when the resolved parent lies below a resolved allowed folder: `/tmp/x` may be written `/private/tmp/x`.
     fn is_below_resolved(&self, path: &Path) -> bool {
-        let Some(parent) = path.parent() else { return false };
+        let (Some(parent), Some(_)) = (path.parent(), path.file_name()) else { return false };
         let Ok(parent) = self.files.resolve(parent) else { return false };
         self.allowed.iter().any(|a| self.files.resolve(a).is_ok_and(|a| parent.starts_with(a)))
     }
@@ -225,6 +230,16 @@ impl Access {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn above_the_working_folder_is_outside_whether_there_is_a_file_or_not() {
+        let files = Memory::default().with("a.obj", "a").with("../there", "b");
+        let access = Access::new(Arc::new(files), [PathBuf::from(".")]);
+        assert_eq!(access.read(Path::new("./a.obj")).unwrap(), b"a");
+        for outside in ["../there", "../not_there", "x/../../not_there", "/etc/not_there", ".."] {
+            assert!(matches!(access.read(Path::new(outside)), Err(AccessError::Outside(_))), "{outside}");
+        }
+    }
 
     #[test]
     fn reading_is_confined_and_recorded() {
