@@ -15,6 +15,9 @@ pub mod geometry;
 
 pub mod head;
 
+pub mod animate;
+pub mod deform;
+pub mod dynamics;
 pub mod groom;
 pub mod tuft;
 

@@ -1,6 +1,6 @@
 //! Triangle meshes.
 
-use glam::{Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 
 use super::Bounds;
 use crate::math::Digest;
@@ -139,6 +139,25 @@ impl Mesh {
             }
         }
         self.normals = weld.iter().map(|&w| sums[w as usize].try_normalize().unwrap_or(Vec3::Y)).collect();
+    }
+
+    /// The same surface with other positions, one per vertex; normals are made anew where there were any.
+    #[must_use]
+    pub fn moved(&self, positions: &[Vec3]) -> Self {
+        let mut mesh = Self { positions: positions.to_vec(), ..self.clone() };
+        if !self.normals.is_empty() {
+            mesh.compute_normals();
+        }
+        mesh
+    }
+
+    /// The surface moved as a whole: turned, shifted, evenly scaled.
+    #[must_use]
+    pub fn transformed(&self, by: &Affine3A) -> Self {
+        let mut mesh = self.clone();
+        mesh.positions.iter_mut().for_each(|p| *p = by.transform_point3(*p));
+        mesh.normals.iter_mut().for_each(|n| *n = by.transform_vector3(*n).normalize_or_zero());
+        mesh
     }
 
     /// For every vertex the first vertex at the very same position.

@@ -4,6 +4,7 @@
 
 pub mod bounds;
 pub mod bvh;
+pub mod clip;
 pub mod curtain;
 pub mod curve;
 pub mod frames;
@@ -17,6 +18,7 @@ pub mod strands;
 
 pub use bounds::Bounds;
 pub use bvh::{Bvh, Closest, Hit};
+pub use clip::Clip;
 pub use curtain::Curtain;
 pub use mesh::{Group, Mesh, MeshError};
 pub use obox::OrientedBox;

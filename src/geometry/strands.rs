@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::Bounds;
@@ -98,6 +98,18 @@ impl Strands {
     /// No strands; ready for [`Strands::push`].
     pub fn new() -> Self {
         Self { offsets: vec![0], ..Self::default() }
+    }
+
+    /// The strands moved as a whole: turned, shifted, evenly scaled; their roots with them.
+    #[must_use]
+    pub fn transformed(&self, by: &Affine3A) -> Self {
+        let mut strands = self.clone();
+        strands.points.par_iter_mut().for_each(|p| *p = by.transform_point3(*p));
+        for root in &mut strands.roots {
+            root.position = by.transform_point3(root.position);
+            root.normal = by.transform_vector3(root.normal).normalize_or_zero();
+        }
+        strands
     }
 
     /// How many strands there are.

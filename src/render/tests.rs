@@ -35,7 +35,7 @@ fn part(name: &str, lines: &[Vec<Vec3>], colour: u32, width: f32) -> Part {
         ..HairMaterial::default()
     };
     let hair = Hair { guides: strands.clone(), strands, material, overlay: Arc::new(Overlay::default()) };
-    Part { name: name.into(), source: String::new(), body: Body::Hair(hair) }
+    Part { name: name.into(), source: String::new(), body: Body::Hair(hair), motion: None }
 }
 
 /// A sphere of radius `r` in 24 x 48 pieces.
@@ -54,7 +54,7 @@ fn ball(r: f32) -> Part {
         }
     }
     let material = MeshMaterial::default();
-    Part { name: "head".into(), source: String::new(), body: Body::Mesh(Arc::new(mesh), material) }
+    Part { name: "head".into(), source: String::new(), body: Body::Mesh(Arc::new(mesh), material), motion: None }
 }
 
 fn scene(parts: Vec<Part>, views: &[View]) -> Scene {

@@ -55,6 +55,12 @@ impl Locks {
         Self { kind, tufts: Arc::default(), mesh: Arc::new(mesh), palette: vec![material] }
     }
 
+    /// The same locks with another surface of the same topology.
+    #[must_use]
+    pub fn with_surface(&self, mesh: Mesh) -> Self {
+        Self { mesh: Arc::new(TuftMesh { mesh, ..(*self.mesh).clone() }), ..self.clone() }
+    }
+
     /// How many locks there are.
     pub fn count(&self) -> usize {
         self.mesh.vertices.len()

@@ -4,6 +4,7 @@
 
 mod locks;
 mod look;
+mod motion;
 mod overlay;
 
 use std::sync::Arc;
@@ -14,6 +15,7 @@ use crate::geometry::{Bounds, Mesh, Strands};
 
 pub use locks::{LockKind, Locks};
 pub use look::{Background, HairMaterial, Look, MeshMaterial, Shading, TuftMaterial, View};
+pub use motion::{Motion, Timeline};
 pub use overlay::{Arrow, Line, Marker, Overlay, WireBox, WireSphere};
 
 /// A finished hairstyle.
@@ -38,8 +40,10 @@ pub struct Part {
     pub name: String,
     /// Place in the script that made it: `ponytail.lua:24`; empty when no script did.
     pub source: String,
-    /// What it is.
+    /// What it is; for a part that moves, at rest.
     pub body: Body,
+    /// How it moves, if it does.
+    pub motion: Option<Motion>,
 }
 
 /// What a part is made of.

@@ -135,7 +135,7 @@ fn scene(call: &Call) -> Result<Value> {
             }
         };
         let name = unique(base, &scene.parts);
-        scene.parts.push(Part { name, source, body });
+        scene.parts.push(Part { name, source, body, motion: None });
     }
     let bounds = scene.bounds();
     for part in &mut scene.parts {

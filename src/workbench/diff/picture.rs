@@ -128,7 +128,7 @@ fn coloured_locks(old: Option<Locks>, new: Option<Locks>, moves: &[Moved], most:
         (!tufts.tufts.is_empty()).then(|| Locks::tufts(Arc::new(tufts), palette.clone()))
     };
     let both = [old.and_then(|l| repaint(l, &of_old)), new.and_then(|l| repaint(l, &of_new))];
-    let part = |locks| Part { name: String::new(), source: String::new(), body: Body::Locks(locks) };
+    let part = |locks| Part { name: String::new(), source: String::new(), body: Body::Locks(locks), motion: None };
     both.into_iter().flatten().map(part).collect()
 }
 
@@ -146,5 +146,5 @@ fn part(strands: Strands, colour: u32, look: &HairMaterial) -> Part {
     let colour = Colour::hex(colour);
     let material = HairMaterial { root_colour: colour, tip_colour: colour, variation: 0.05, ..look.clone() };
     let hair = Hair { guides: Arc::clone(&strands), strands, material, overlay: Arc::default() };
-    Part { name: String::new(), source: String::new(), body: Body::Hair(hair) }
+    Part { name: String::new(), source: String::new(), body: Body::Hair(hair), motion: None }
 }

@@ -1,0 +1,1 @@
+//! Free-form deformation with fixed points (Liu, Liu 2011): lattices, pins, girths; for any points whatever.
