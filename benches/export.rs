@@ -57,7 +57,7 @@ fn scene() -> Scene {
     };
     Scene {
         name: "bench".into(),
-        parts: vec![Part { name: "hair".into(), source: String::new(), body: Body::Hair(hair) }],
+        parts: vec![Part { name: "hair".into(), source: String::new(), body: Body::Hair(hair), motion: None }],
         views: vec![View::Front],
         look: Look::default(),
         placement: Affine3A::IDENTITY,

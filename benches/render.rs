@@ -79,8 +79,8 @@ fn scene() -> Scene {
     Scene {
         name: "bench".into(),
         parts: vec![
-            Part { name: "head".into(), source: String::new(), body: head },
-            Part { name: "hair".into(), source: String::new(), body: Body::Hair(hair) },
+            Part { name: "head".into(), source: String::new(), body: head, motion: None },
+            Part { name: "hair".into(), source: String::new(), body: Body::Hair(hair), motion: None },
         ],
         views: VIEWS.to_vec(),
         look: Look::default(),

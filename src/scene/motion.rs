@@ -109,11 +109,11 @@ impl Part {
         let Some(motion) = &self.motion else { return self.clone() };
         let body = match (&self.body, motion) {
             (Body::Mesh(mesh, material), Motion::Rigid(clip)) => match clip.at(frame) {
-                Some(transform) => Body::Mesh(Arc::new(mesh.transformed(transform)), material.clone()),
+                Some(transform) => Body::Mesh(Arc::new(mesh.transformed(transform)), *material),
                 None => self.body.clone(),
             },
             (Body::Mesh(mesh, material), Motion::Surface(clip)) => match clip.at(frame) {
-                Some(positions) => Body::Mesh(Arc::new(mesh.moved(positions)), material.clone()),
+                Some(positions) => Body::Mesh(Arc::new(mesh.moved(positions)), *material),
                 None => self.body.clone(),
             },
             (Body::Locks(locks), Motion::Rigid(clip)) => match clip.at(frame) {
