@@ -8,7 +8,7 @@ use coif::geometry::{Mesh, Root, Strands};
 use coif::math::rng::Key;
 use coif::math::trig::{cos, sin};
 use coif::render::{self, SheetOptions, Speed};
-use coif::scene::{Body, Hair, HairMaterial, Look, MeshMaterial, Overlay, Part, Scene, View};
+use coif::scene::{Body, Hair, HairMaterial, Look, MeshMaterial, Overlay, Part, Scene, Shown, View};
 use coif::task::Task;
 use divan::Bencher;
 use glam::{Affine3A, Vec2, Vec3};
@@ -85,6 +85,7 @@ fn scene() -> Scene {
         views: VIEWS.to_vec(),
         look: Look::default(),
         placement: Affine3A::IDENTITY,
+        shown: Shown::default(),
     }
 }
 

@@ -6,7 +6,7 @@ use glam::{Affine3A, Vec2, Vec3};
 
 use crate::geometry::{Mesh, Root, Strands};
 use crate::math::{Colour, rng::Key};
-use crate::scene::{Background, Body, Hair, HairMaterial, Look, MeshMaterial, Overlay, Part, Scene, View};
+use crate::scene::{Background, Body, Hair, HairMaterial, Look, MeshMaterial, Overlay, Part, Scene, Shown, View};
 use crate::task::Task;
 
 use super::{Picture, RenderError, SheetOptions, sheet};
@@ -58,7 +58,7 @@ fn ball(r: f32) -> Part {
 }
 
 fn scene(parts: Vec<Part>, views: &[View]) -> Scene {
-    Scene { name: "test".into(), parts, views: views.to_vec(), look: Look::default(), placement: Affine3A::IDENTITY }
+    Scene { name: "test".into(), parts, views: views.to_vec(), look: Look::default(), placement: Affine3A::IDENTITY, shown: Shown::default() }
 }
 
 fn bare(width: u32, height: u32) -> SheetOptions {
