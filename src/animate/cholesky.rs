@@ -104,8 +104,7 @@ impl Factor {
                 values[end] = l;
                 filled[i] += 1;
             }
-            // Written so that NaN is refused too.
-            if !(diagonal > 1e-13 * full) {
+            if diagonal.is_nan() || diagonal <= 1e-13 * full {
                 return Err(Indefinite { row: k });
             }
             inverse[k] = 1.0 / diagonal;
@@ -160,8 +159,8 @@ fn substitute<const W: usize>(starts: &[u32], rows: &[u32], values: &[f64], inve
     }
     for j in (0..n).rev() {
         let mut own = x[j];
-        for c in 0..W {
-            own[c] *= inverse[j];
+        for o in own.iter_mut().take(W) {
+            *o *= inverse[j];
         }
         let (start, end) = (starts[j] as usize, starts[j + 1] as usize);
         for (&i, &l) in rows[start..end].iter().zip(&values[start..end]) {

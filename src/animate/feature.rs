@@ -183,9 +183,9 @@ fn evaluate(
         for a in 0..=states {
             for b in 0..=a {
                 let sum = &mut inner[pair];
-                for c in 0..6 {
+                for (fa, fb) in fields[a].iter().zip(&fields[b]) {
                     for l in 0..TILE {
-                        sum[l] += tile.weight[l] * fields[a][c][l] * fields[b][c][l];
+                        sum[l] += tile.weight[l] * fa[l] * fb[l];
                     }
                 }
                 pair += 1;
@@ -386,8 +386,10 @@ mod tests {
         DVec3::from_array([0, 1, 2].map(|c| size * f64::from(key.with(c as u64).range(-1.0, 1.0))))
     }
 
+    type Triangles = Vec<([u32; 3], Flat)>;
+
     /// 11 triangles about 12 rows with 3 states.
-    fn features() -> (Vec<([u32; 3], Flat)>, Vec<Vec<Change>>, Features) {
+    fn features() -> (Triangles, Vec<Vec<Change>>, Features) {
         let key = Key::new(3, "features");
         let triangle = |i: u64| {
             let k = key.with(i);

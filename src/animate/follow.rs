@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn carried_frames_are_moved_as_the_head_is() {
-        let clip = Clip::new(24.0, vec![Arc::new(vec![Vec3::X]); 3]);
+        let clip = Clip::new(24.0, (0..3).map(|_| Arc::new(vec![Vec3::X])).collect());
         let by = head(2, |f| Affine3A::from_translation(Vec3::Y * f as f32));
         let out = carried(&clip, &by);
         assert_eq!(*out.frames[0], [Vec3::X]);

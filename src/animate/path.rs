@@ -1,5 +1,7 @@
 //! Paths: where a handle is from frame to frame.
 
+use std::cmp::Ordering;
+
 use glam::Vec3;
 
 use super::AnimateError;
@@ -96,8 +98,8 @@ impl PathOptions {
             if times.len() != pieces.count() + 1 {
                 return Err(AnimateError::TimeCount { times: times.len(), points: pieces.count() + 1 });
             }
-            // Written so that NaN is refused too.
-            if let Some(i) = (1..times.len()).find(|&i| !(times[i] > times[i - 1])) {
+            let rises = |i: usize| times[i - 1].partial_cmp(&times[i]) == Some(Ordering::Less);
+            if let Some(i) = (1..times.len()).find(|&i| !rises(i)) {
                 return Err(AnimateError::TimeOrder { number: i + 1, time: times[i], before: times[i - 1] });
             }
         }

@@ -1,6 +1,6 @@
 //! Posing a rig: where the handles are given, the states' weights and all other vertices are found.
 //!
-//! Wanted are `x` and `w` with the least `|G x - M(w)|^2` (Sumner et al. 2005, equation 8 here in METHODS' numbering). For
+//! Wanted are `x` and `w` with the least `|G x - M(w)|^2` (Sumner et al. 2005; equation 8 of Ren, Zhao, Geng 2010). For
 //! given weights `x` is linear, so it is eliminated (variable projection, Golub, Pereyra 1973): with the factored
 //! `A = G^T G` one iteration solves for `x(w)` and for `dx/dw_i`, all right-hand sides at once, and the weights get the
 //! Gauss-Newton step of the small system
@@ -168,7 +168,8 @@ impl<'a> Poser<'a> {
         let mut step = f64::INFINITY;
         for iterations in 1..=self.most_iterations {
             let small = self.evaluate(&weights);
-            let uphill = held.as_ref().is_some_and(|(_, h)| !(small.energy <= h.energy + 1e-12 * (1.0 + h.energy)));
+            let above = |h: &Small| small.energy.is_nan() || small.energy > h.energy + 1e-12 * (1.0 + h.energy);
+            let uphill = held.as_ref().is_some_and(|(_, h)| above(h));
             let (from, small) = match held.take() {
                 Some(before) if uphill => {
                     damping = if damping == 0.0 { 1e-2 } else { 8.0 * damping };
@@ -188,10 +189,12 @@ impl<'a> Poser<'a> {
                     return Descent { weights: from, energy, iterations, step: 0.0, converged: true };
                 }
             } else {
-                step = self.movement(&delta);
+                // A step that is short for its damping only says nothing.
+                let full = if damping > 0.0 { self.small_step(&small, 0.0) } else { delta.clone() };
+                step = self.movement(&full);
                 if step <= limit {
-                    self.advance(&delta);
-                    let weights = from.iter().zip(&delta).map(|(w, d)| w + d).collect();
+                    self.advance(&full);
+                    let weights = from.iter().zip(&full).map(|(w, d)| w + d).collect();
                     return Descent { weights, energy: small.energy, iterations, step, converged: true };
                 }
             }
@@ -261,8 +264,8 @@ impl<'a> Poser<'a> {
         let greatest = (0..n).map(|i| small.hessian[i][i]).fold(0.0, f64::max);
         let mut l = small.hessian;
         let mut d: Vec<f64> = small.slope[..n].iter().map(|g| -g).collect();
-        for i in 0..n {
-            l[i][i] += damping * l[i][i].max(0.0) + (FLOOR + 1e-3 * damping) * greatest + f64::MIN_POSITIVE;
+        for (i, row) in l.iter_mut().enumerate().take(n) {
+            row[i] += damping * row[i].max(0.0) + (FLOOR + 1e-3 * damping) * greatest + f64::MIN_POSITIVE;
         }
         for i in 0..n {
             for j in 0..=i {

@@ -10,8 +10,7 @@ use glam::{DMat3, DQuat, DVec3};
 /// `T = R S` with a rotation and a symmetric positive definite stretch, by Newton's iteration for the polar factor,
 /// scaled (Higham 1986). `None` when `T` turns space inside out, has no inverse or is not finite.
 pub(super) fn polar(t: DMat3) -> Option<(DMat3, DMat3)> {
-    // Written so that NaN is refused too.
-    if !(t.determinant() > 0.0) || !t.is_finite() {
+    if !t.is_finite() || t.determinant() <= 0.0 {
         return None;
     }
     let norm = |m: DMat3| m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared();

@@ -73,9 +73,7 @@ impl Shape {
                 shape.numbers.push(i as u32);
             }
         }
-        for v in 0..count {
-            shape.spot[v] = shape.spot[leader[v] as usize];
-        }
+        shape.spot = leader.iter().map(|&lead| shape.spot[lead as usize]).collect();
         if shape.triangles.is_empty() {
             let position = rest.positions[rest.triangles[0][0] as usize];
             return Err(AnimateError::Degenerate { state: 1, triangle: 1, position });

@@ -289,9 +289,8 @@ fn least_squares(jacobian: &[Vec<f64>], residual: &[f64]) -> Vec<f64> {
         m.swap(i, pivot);
         for r in i + 1..n {
             let f = m[r][i] / m[i][i];
-            for c in i..=n {
-                m[r][c] -= f * m[i][c];
-            }
+            let (above, below) = m.split_at_mut(r);
+            below[0][i..].iter_mut().zip(&above[i][i..]).for_each(|(to, from)| *to -= f * from);
         }
     }
     let mut x = vec![0.0; n];
@@ -478,7 +477,7 @@ fn what_does_not_fit_is_named() {
     let error = |states: &[&[Vec3]], held: &[u32], handles: &[u32]| Rig::new(&mesh, states, held, handles).unwrap_err();
 
     assert_eq!(error(&[], &roots, &[tip]), AnimateError::NoStates);
-    assert_eq!(error(&vec![&state[..]; 11], &roots, &[tip]), AnimateError::TooManyStates { count: 11, limit: 10 });
+    assert_eq!(error(&[&state[..]; 11], &roots, &[tip]), AnimateError::TooManyStates { count: 11, limit: 10 });
     let (count, rest) = (state.len() - 1, state.len());
     assert_eq!(error(&[&state[1..]], &roots, &[tip]), AnimateError::VertexCount { state: 2, count, rest });
     let mut holed = state.clone();
