@@ -4,7 +4,7 @@
 //! places. What it is applied to is plain points; [`mesh`] and [`strands`] see to normals,
 //! seams and roots. [`fit`] finds the control motion that gives a garment a wanted girth.
 //!
-//! The words are those of `docs/glossary.md`; the equations are numbered as in the paper.
+//! `docs/methods/deform.md` has the method, its sources and every departure; equations are numbered as in the paper.
 
 mod apply;
 mod dense;
