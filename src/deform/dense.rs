@@ -7,8 +7,8 @@ pub fn solve<const N: usize>(mut a: Vec<f64>, mut b: Vec<[f64; N]>) -> Option<Ve
     let largest = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     for k in 0..n {
         let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs()))?;
-        // Not a number compares as the largest and is refused here as well.
-        if !(a[pivot * n + k].abs() > 1e-12 * largest) {
+        let size = a[pivot * n + k].abs();
+        if size.is_nan() || size <= 1e-12 * largest {
             return None;
         }
         if pivot != k {
@@ -25,16 +25,17 @@ pub fn solve<const N: usize>(mut a: Vec<f64>, mut b: Vec<[f64; N]>) -> Option<Ve
             for c in k..n {
                 a[i * n + c] -= factor * a[k * n + c];
             }
-            for c in 0..N {
-                b[i][c] -= factor * b[k][c];
-            }
+            let known = b[k];
+            b[i].iter_mut().zip(known).for_each(|(x, known)| *x -= factor * known);
         }
     }
     for k in (0..n).rev() {
-        for c in 0..N {
+        let mut x = b[k];
+        for (c, x) in x.iter_mut().enumerate() {
             let known: f64 = (k + 1..n).map(|j| a[k * n + j] * b[j][c]).sum();
-            b[k][c] = (b[k][c] - known) / a[k * n + k];
+            *x = (*x - known) / a[k * n + k];
         }
+        b[k] = x;
     }
     Some(b)
 }

@@ -3,6 +3,9 @@
 //! Points are laid into lanes, so that every operation is done for all lanes together; there is no fused arithmetic and
 //! no sum over lanes, so that results are the same on every processor and in any division of the points.
 
+// Lanes are counted: that is the form in which loops over them become single instructions.
+#![allow(clippy::needless_range_loop)]
+
 use glam::{DMat3, Vec3};
 use multiversion::multiversion;
 
