@@ -10,7 +10,9 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::geometry::{Root, Strands};
+use glam::Vec3;
+
+use crate::geometry::{Clip, Root, Strands};
 use crate::head::Head;
 use crate::math::Digest;
 use crate::task::Warning;
@@ -36,6 +38,12 @@ impl Kept for Head {
 impl Kept for Vec<Root> {
     fn bytes(&self) -> usize {
         size_of_val(&**self)
+    }
+}
+
+impl Kept for Clip<Vec<Vec3>> {
+    fn bytes(&self) -> usize {
+        self.frames.iter().map(|f| size_of_val(&f[..])).sum()
     }
 }
 

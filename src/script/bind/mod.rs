@@ -3,6 +3,7 @@
 //! Each file has the same shape: parameter structs, then `functions()` or `noun()`, then what they do. A binding reads
 //! its arguments strictly, calls the core, and gives the core's errors a place. This file is the table of contents.
 
+mod animate;
 mod clip;
 mod constants;
 mod domain;
@@ -14,6 +15,7 @@ mod overlay;
 mod params;
 mod picture;
 mod piece;
+mod posed;
 mod region;
 mod scene;
 mod strands;
@@ -41,6 +43,7 @@ pub fn registry() -> Registry {
         domain::functions(),
         tuft::functions(),
         piece::functions(),
+        animate::functions(),
         material::functions(),
         scene::functions(),
     ];
@@ -50,6 +53,7 @@ pub fn registry() -> Registry {
         clip::nouns(),
         domain::nouns(),
         tuft::nouns(),
+        vec![animate::noun()],
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
         tested::nouns(),
     ];
