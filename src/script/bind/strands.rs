@@ -12,6 +12,7 @@ use crate::geometry::{Root, Strands};
 use crate::groom::{
     Deform, DeformOptions, Fill, FillOptions, NaturalQueue, count_inside, deform, deformed_points, fill, member_nodes,
 };
+use crate::head::MOST_ROOTS;
 use crate::math::Digest;
 use crate::params::{Object, Table, Value};
 use crate::scene::{HairMaterial, Overlay};
@@ -153,7 +154,19 @@ fn fill_strands(call: &Call) -> Result<Value> {
         None => &this.area,
     };
     let head = &area.head;
+    // The first roots of the order are a sparser fill of the same region.
+    let draft = call.session.options.draft;
+    let few = |count: usize| draft.map_or(count, |most| count.min(most.max(1)));
+    let nodes = member_nodes(&this.strands, &options);
+    // What is refused whatever the limits has words of its own.
+    if extras.density.is_none() && options.strands <= MOST_ROOTS {
+        call.claim("strands", Need::strands(few(options.strands), nodes))?;
+    }
     let roots = area.roots(call, ("strands", options.strands), extras.density, options.seed)?;
+    let few = few(roots.len());
+    if extras.density.is_some() {
+        call.claim("density", Need::strands(few, nodes))?;
+    }
     let partings = &this.area.partings;
     let separated = |a, b| partings.iter().any(|p| p.separates(a, b));
     let source = call.source();
@@ -164,17 +177,13 @@ fn fill_strands(call: &Call) -> Result<Value> {
         key.data(&options).packed(roots, Root::bytes).data(partings);
         key
     };
-    // The first roots of the order are a sparser fill of the same region.
-    let few = call.session.options.draft.map_or(roots.len(), |most| most.clamp(1, roots.len().max(1)).min(roots.len()));
-    if call.session.options.draft.is_some() {
+    if draft.is_some() {
         let mut thinned = call.session.thinned.get();
         thinned.members += few;
         thinned.of += roots.len();
         thinned.pending += if memo.has(key(&roots).finish()) { 0 } else { roots.len() };
         call.session.thinned.set(thinned);
     }
-    let nodes = member_nodes(&this.strands, &options);
-    call.claim(if extras.density.is_some() { "density" } else { "strands" }, Need::strands(few, nodes))?;
     let input = Fill {
         guides: &this.strands,
         roots: &roots[..few],
