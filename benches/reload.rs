@@ -43,7 +43,7 @@ const EDITS: &[Edit] = &[
     ("a comment", |n| format!("-- version {n}\n{SCRIPT}")),
     ("nothing", |_| SCRIPT.to_owned()),
     ("cartoon: a shape", |n| changed(CARTOON, "length = { 1,", &format!("length = {{ 1.{:04},", n + 1))),
-    ("cartoon: a colour", |n| changed(CARTOON, "#f2b632", &format!("#{:06x}", 0xf2_b6_32 + n + 1))),
+    ("cartoon: a colour", |n| changed(CARTOON, "#f2b632", &format!("#{:06x}", 0x00f2_b632 + n + 1))),
     ("cartoon: a comment", |n| format!("-- version {n}\n{CARTOON}")),
 ];
 

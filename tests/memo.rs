@@ -190,7 +190,7 @@ local head = coif.head { style = "cartoon" }
 local function at(azimuth, height) return { azimuth = azimuth, elevation = 60, height = height } end
 local a = coif.tuft { stroke = { at(-40, 0), at(-40, 3), at(-60, 4) }, diameter = 3, peak = 30, material = "#604020" }
 local b = coif.tuft { stroke = { at(40, 0), at(40, 0.1), at(90, 0.1) }, diameter = 3, peak = 30 }
-local all = coif.fill { a, b, around = 30, up = 0, down = 0, jitter = 1 }
+local all = coif.fill { a, b, around = 30, jitter = 0.5 }
 local cap = coif.cap { material = "#302010" }
 return coif.scene { head, cap, all, shading = "toon", views = { "front" } }
 "##;
@@ -227,7 +227,7 @@ fn tufts_their_fills_and_caps_are_kept() {
     // A look makes nothing anew; a shape what it is the shape of, and what is made of it.
     assert_eq!(computed(&script(&edit("#302010", "#403020"), &memo)), [""; 0]);
     assert_eq!(computed(&script(&edit("shading = \"toon\", ", ""), &memo)), [""; 0]);
-    assert_eq!(computed(&script(&edit("jitter = 1", "jitter = 2"), &memo)), ["coif.fill a.lua:6"]);
+    assert_eq!(computed(&script(&edit("jitter = 0.5", "jitter = 0.7"), &memo)), ["coif.fill a.lua:6"]);
     let wider = script(&edit("at(-60, 4) }, diameter = 3", "at(-60, 4) }, diameter = 4"), &memo);
     assert_eq!(computed(&wider), ["coif.tuft a.lua:4", "coif.fill a.lua:6"]);
     // What is kept is what would be made.

@@ -49,6 +49,9 @@ pub struct Vicinity {
     leaf: u32,
 }
 
+/// Normal and height.
+type Plane = (Vec3, f32);
+
 /// Marks a large cell that has small ones.
 const FINE: u32 = 1 << 31;
 /// No leaf: outside of all cells.
@@ -102,7 +105,7 @@ impl Cells {
         for depth in 0..=Self::LEVELS {
             // The half diagonal is where the first bound turns useless at the cell's corners.
             let is_near = |d: f32| d.abs() < 1.25 * half * 3.0_f32.sqrt();
-            let found: Vec<(f32, u32, Option<(Vec3, f32)>)> = (level.par_iter())
+            let found: Vec<(f32, u32, Option<Plane>)> = (level.par_iter())
                 .map(|unit| {
                     let found = solid.guessed(unit.centre, unit.most, unit.guess);
                     let Some((near, slot)) = found.or_else(|| solid.guessed(unit.centre, f32::MAX.sqrt(), None)) else {
@@ -210,7 +213,7 @@ fn reach(half: f32) -> f32 {
 
 /// The plane over everything that can be closest to a point of the cell about `c`, if the part of the cell over it is
 /// outside the solid. `near` is closest to `c`, a triangle at `slot` of the tree.
-fn plane(solid: &Solid, c: Vec3, half: f32, near: &SurfacePoint, slot: u32) -> Option<(Vec3, f32)> {
+fn plane(solid: &Solid, c: Vec3, half: f32, near: &SurfacePoint, slot: u32) -> Option<Plane> {
     let outward = (c - near.position) * near.distance.signum();
     let normal = if near.distance.abs() > 1e-3 * half { outward.normalize_or(near.normal) } else { near.normal };
     let reach = (near.distance.abs() + reach(half)) * 1.0001;

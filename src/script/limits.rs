@@ -146,7 +146,7 @@ pub fn count(text: &str) -> Option<u64> {
         _ => (number, 1.0),
     };
     let value = number.trim().parse::<f64>().ok()? * unit;
-    (value >= 1.0 && value <= 1e15).then_some(value.round() as u64)
+    (1.0..=1e15).contains(&value).then_some(value.round() as u64)
 }
 
 #[cfg(test)]
