@@ -22,6 +22,9 @@ use super::rig::{Fixed, Rig};
 pub const TOLERANCE: f64 = 1e-5;
 /// After so many iterations a frame is given up.
 const MOST_ITERATIONS: u32 = 60;
+/// What a weight beyond the states costs: its distance from 0..=1, squared, times this. A residual of a tenth is a hundredth
+/// squared, so a weight of 2 is taken for that, but not one of 6.
+const BLENDING: f64 = 0.01;
 /// Keeps the small system solvable where weights make no difference: states that are alike.
 const FLOOR: f64 = 1e-9;
 
@@ -55,6 +58,8 @@ pub struct Poser<'a> {
     /// Places by row, from the centre.
     x: Vec<[f64; 3]>,
     pub(super) most_iterations: u32,
+    /// [`BLENDING`]; tests of the plain energy have 0.
+    pub(super) blending: f64,
 }
 
 /// One descent.
@@ -84,6 +89,7 @@ impl<'a> Poser<'a> {
             shift: vec![[0.0; 3]; rig.unknowns()],
             x: rig.places.iter().map(|p| p.to_array()).collect(),
             most_iterations: MOST_ITERATIONS,
+            blending: BLENDING,
         }
     }
 
@@ -127,7 +133,9 @@ impl<'a> Poser<'a> {
         });
         self.write(targets, out);
         self.weights = [Some(best.weights.clone()), self.weights[0].take()];
-        let residual = best.energy.max(0.0).sqrt();
+        let mut blending = Small { energy: 0.0, slope: [0.0; FIELDS], hessian: [[0.0; FIELDS]; FIELDS] };
+        self.blended(&best.weights, &mut blending);
+        let residual = (best.energy - blending.energy).max(0.0).sqrt();
         Posed { weights: best.weights, iterations, residual, step: best.step, converged: best.converged }
     }
 
@@ -247,7 +255,28 @@ impl<'a> Poser<'a> {
         let pull = |&(fixed, row, a): &(u32, u32, f64)| a * dot(&self.x[free + fixed as usize], &self.x[row as usize]);
         let pulled: f64 = rig.coupling.iter().map(pull).sum();
         small.energy = inner[0][0] - with_places[0] - at_fixed + pulled;
+        self.blended(weights, &mut small);
         small
+    }
+
+    /// Adds what weights beyond the states cost, the rest's included. Between the states, and at each of them, nothing: so
+    /// every state is still met exactly.
+    fn blended(&self, weights: &[f64], small: &mut Small) {
+        let beyond = |w: f64| w - w.clamp(0.0, 1.0);
+        let of_rest = beyond(1.0 - weights.iter().sum::<f64>());
+        let cost = self.blending;
+        small.energy += cost * of_rest * of_rest;
+        for (i, w) in weights.iter().enumerate() {
+            let own = beyond(*w);
+            small.energy += cost * own * own;
+            small.slope[i] += cost * (own - of_rest);
+            if own != 0.0 {
+                small.hessian[i][i] += cost;
+            }
+            if of_rest != 0.0 {
+                small.hessian[i][..weights.len()].iter_mut().for_each(|h| *h += cost);
+            }
+        }
     }
 
     /// The product of the right-hand side of one field with the solution of another, over the free rows.

@@ -200,8 +200,17 @@ impl Posed {
             let hint = "say what stays: `held = function(place) return place.y > 5 end`".to_owned();
             return Err(call.problem_at("held", "a piece has no root", Some(hint)));
         }
-        let is_held = |v: &u32| self.along(lock, *v).is_some_and(|t| t <= part + 1e-5);
-        Ok((0..lock.vertices.len() as u32).filter(is_held).collect())
+        let at = |v: u32| self.along(lock, v).unwrap_or(1.0);
+        let positions = self.within(0, lock);
+        let all: Vec<u32> = (0..lock.vertices.len() as u32).filter(|&v| at(v) <= part + 1e-5).collect();
+        if part > 0.0 {
+            return Ok(all);
+        }
+        // The middle of the root alone: the ring of an open one turns with the stroke, buried in the head.
+        let middle = all.iter().map(|&v| positions[v as usize]).sum::<Vec3>() / all.len().max(1) as f32;
+        let off = |v: &u32| positions[*v as usize].distance(middle);
+        let least = all.iter().map(off).fold(f32::MAX, f32::min);
+        Ok(all.into_iter().filter(|v| off(v) <= least + 1e-4).collect())
     }
 
     /// The vertex of a handle.
