@@ -36,16 +36,17 @@ local tie = coif.bun { position = knot + 0.3 * axis, axis = axis, radius = 2.9, 
 
 -- The tail falls out of the bun; `side` and `back` are how far its tip is pushed aside and lifted off the back.
 local function tail(side, back)
-  local root   = knot + 0.6 * axis
-  local points = { root, root + 2.6 * axis }
+  local root   = at(180, 52)
+  local out    = knot + 4.6 * axis
+  local points = { root, knot + 2.2 * axis, out }
   for i = 1, 8 do
     local t = i / 8
-    local way = vector.create(side * t ^ 1.5, -18.5 * t + 0.35 * back * t * t, -2.5 - 6.5 * math.sin(1.3 * t) - back * t ^ 1.4)
-    table.insert(points, root + 2.6 * axis + way + vector.create(0, 0, 2.5))
+    local rise = 1.6 * math.sin(3.1 * t)
+    table.insert(points, out + vector.create(side * t ^ 1.5, rise - 23 * t ^ 1.2 + 0.4 * back * t * t, -4.2 * math.sin(1.7 * t) - back * t ^ 1.4))
   end
   return coif.tuft {
     stroke = points, sides = 28, up = { 0, 0.5, -1 }, material = look, bury = true,
-    profile = { { 0, 1.2, 1.2 }, { 0.2, 2.4, 2.2 }, { 0.5, 4.6, 3.0 }, { 0.8, 3.4, 2.2 }, { 1, 0, 0 } },
+    profile = { { 0, 1.2, 1.2 }, { 0.18, 2.6, 2.4 }, { 0.45, 6.0, 4.0 }, { 0.78, 4.6, 3.0 }, { 1, 0, 0 } },
   }
 end
 
@@ -54,7 +55,7 @@ local turn = head:motion {
   { time = 2.0, yaw = -p.turn }, { time = 2.2, yaw = -p.turn }, loop = true,
 }
 local moving = coif.animate {
-  states = { tail(0, 0), tail(11, 1), tail(-11, 1), tail(0, 7) },
+  states = { tail(0, 0), tail(13, 1), tail(-13, 1), tail(0, 9) },
   motion = turn, loop = true,
   lag    = { frequency = 1.1, damping = 0.4, amount = 0.6 * p.lag },
 }
@@ -75,6 +76,6 @@ local front = {
 }
 
 return coif.scene {
-  head, coif.cap { thickness = 0.7, material = look }, combed, bun, tie, front, moving,
+  head, coif.cap { thickness = 0.7, material = p.hair }, combed, bun, tie, front, moving,
   shading = "toon", skin = "#f3cfb4", views = { "front", "three-quarter", "back" }, motion = turn, still = 14,
 }

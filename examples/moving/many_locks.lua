@@ -18,7 +18,7 @@ local function fall(azimuth, elevation, length, width, push, lift)
   local root = at(azimuth, elevation)
   local edge = at(azimuth, math.min(elevation - 24, 8), 1.5)
   local out  = vector.normalize(vector.create(edge.x, 0, edge.z))
-  local points = { root, at(azimuth, elevation - 6, 1.4), at(azimuth, 0.5 * (elevation + math.min(elevation - 24, 8)), 2.0), edge }
+  local points = { root, at(azimuth, elevation - 7, 1.0), at(azimuth, 0.5 * (elevation + math.min(elevation - 24, 8)), 1.9), edge }
   for i = 1, 5 do
     local t = i / 5
     local free = t ^ 1.6
@@ -27,14 +27,14 @@ local function fall(azimuth, elevation, length, width, push, lift)
   end
   return coif.tuft {
     stroke = points, sides = 20, up = out, material = look, bury = true,
-    profile = { { 0, 0.8 * width, 1.1 }, { 0.3, width, 1.7 }, { 0.65, 0.85 * width, 1.4 }, { 1, 0, 0 } },
+    profile = { { 0, 0, 0 }, { 0.16, 0.8 * width, 1.3 }, { 0.4, width, 1.8 }, { 0.7, 0.85 * width, 1.5 }, { 1, 0, 0 } },
   }
 end
 
 -- All locks in one pose: three rows from ear to ear behind the head.
 local function mane(push, lift)
   local all = nil ---@type any
-  for row, place in { { 14, 15, 4.6, 9 }, { 38, 15, 5.0, 9 }, { 62, 13, 5.4, 7 } } do
+  for row, place in { { 20, 14, 4.8, 9 }, { 46, 15, 5.6, 9 }, { 76, 13, 6.4, 9 } } do
     for k = 0, place[4] - 1 do
       local azimuth = 72 + (288 - 72) * k / (place[4] - 1)
       local lock = fall(azimuth, place[1], place[2] - 0.6 * (k % 2), place[3], push * p.wind, lift * p.wind)
@@ -62,6 +62,6 @@ for _, lock in { { -58, -4, 34 }, { -40, -6, 19 }, { -22, -7, 15 }, { -3, -6, 13
 end
 
 return coif.scene {
-  head, coif.cap { thickness = 0.9, material = look }, front, moving,
+  head, coif.cap { thickness = 0.9, material = p.hair }, front, moving,
   shading = "toon", skin = "#eac39f", views = { "front", "three-quarter", "back" }, still = math.ceil(p.frames / 4),
 }

@@ -19,18 +19,19 @@ local function sprout(lean, nod)
   local points = { root }
   local place  = root
   for i = 1, 8 do
-    local side, front = math.rad(lean * (i / 8)), math.rad(nod * (i / 8) - 12)
-    place += 2.1 * vector.create(math.sin(side), math.cos(side) * math.cos(front), math.cos(side) * math.sin(front))
+    local t = i / 8
+    local side, front = math.rad(lean * t ^ 1.4), math.rad(nod * t ^ 1.4 - 25)
+    place += 2.0 * vector.create(math.sin(side), math.cos(side) * math.cos(front), math.cos(side) * math.sin(front))
     table.insert(points, place)
   end
   return coif.tuft {
     stroke = points, up = { 0, 0, 1 }, sides = 24, material = look, bury = true,
-    profile = { { 0, 1.6, 1.4 }, { 0.25, 3.0, 2.2 }, { 0.6, 2.8, 1.9 }, { 1, 0, 0 } },
+    profile = { { 0, 2.4, 1.8 }, { 0.22, 4.0, 2.8 }, { 0.55, 4.4, 2.6 }, { 0.8, 2.9, 1.8 }, { 1, 0, 0 } },
   }
 end
 
 local moving = coif.animate {
-  states = { sprout(4, 30), sprout(p.sway, 42), sprout(-p.sway, 42) },
+  states = { sprout(8, 75), sprout(p.sway, 85), sprout(-p.sway, 85) },
   path   = coif.path { states = { 1, 2, 1, 3 }, closed = true, frames = p.frames },
   loop   = true,
 }
@@ -49,6 +50,6 @@ for _, lock in { { -58, -6, 24 }, { -38, -8, 17 }, { -18, -8, 14 }, { 2, 8, 13 }
 end
 
 return coif.scene {
-  head, coif.cap { thickness = 0.8, material = look }, front, moving,
+  head, coif.cap { thickness = 0.8, material = p.hair }, front, moving,
   shading = "toon", skin = "#f3cfb4", views = { "front", "three-quarter" }, still = math.ceil(p.frames / 4),
 }
