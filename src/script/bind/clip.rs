@@ -11,9 +11,10 @@ use super::super::call::{Call, Result};
 use super::super::registry::{Entry, Getter, Noun};
 use super::head::give;
 use super::piece::Piece;
-use super::strands::Lock;
+use super::strands::{FillExtras, Lock, MaterialFields, fill_clip_strands, material_clip, natural_clip};
 use super::tuft::Wig;
 use crate::geometry::{Bounds, Clip, Strands};
+use crate::groom::{DeformOptions, FillOptions};
 use crate::head::{Head, HeadMotion, MotionOptions};
 use crate::params::{Handle, Object, Table, Value};
 use crate::scene::Locks;
@@ -147,6 +148,15 @@ macro_rules! time {
 pub fn nouns() -> Vec<Noun> {
     let methods = vec![
         Entry::positional::<FrameFields>("StrandsClip:frame", "Strands", frame),
+        Entry::table::<DeformOptions>("StrandsClip:natural", "StrandsClip", natural_clip).about(
+            "Lays waves and curls over strands in motion, as `Strands:natural` over strands. Each domain acts at every \
+             frame on the part of a strand that is inside its box at rest.",
+        ),
+        Entry::both::<FillOptions, FillExtras>("StrandsClip:fill", "StrandsClip", fill_clip_strands).about(
+            "Fills the scalp with strands between guides in motion, as `Strands:fill` between guides. A strand follows \
+             the same guides by the same parts at every frame.",
+        ),
+        Entry::positional::<MaterialFields>("StrandsClip:material", "StrandsClip", material_clip),
         Entry::plain(
             "StrandsClip:stats",
             "Figures: `frames`, `seconds`, `strands`, `points`, `guides`, `travel` (cm, the farthest that a node comes \
