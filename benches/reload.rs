@@ -12,12 +12,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use coif::export::StrandForm;
+use coif::export::{Format, StrandForm};
 use coif::render::SheetOptions;
 use coif::scene::View;
 use coif::script::{Disk, Options, Origin};
 use coif::task::Task;
-use coif::workbench::{self, Report, RunOptions};
+use coif::workbench::{self, Films, Report, RunOptions};
 
 const SCRIPT: &str = include_str!("../examples/ponytail.lua");
 const SIZE: u32 = 1024;
@@ -56,6 +56,8 @@ fn main() {
         strands: StrandForm::None,
         tolerance: 0.05,
         guides: false,
+        formats: vec![Format::Glb],
+        films: Films { moving: true, turntable: false },
         count_inside: false,
         triangles: None,
     };

@@ -798,6 +798,47 @@ local StrandsClip = {}
 ---@return coif.Strands
 function StrandsClip:frame(frame) end
 
+---What `StrandsClip:natural` takes.
+---@class (exact) coif.StrandsClip.natural.fields
+---@field [integer] coif.Domain # The natural domains.
+---@field where? fun(root: vector): boolean # Takes a strand's root (a vector), returns true for the strands to change; all when left out.
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.05]
+---@field seed? number # Another seed gives other random numbers. [whole; default 0]
+
+---Lays waves and curls over strands in motion, as `Strands:natural` over strands. Each domain acts at every frame
+---on the part of a strand that is inside its box at rest.
+---@param fields coif.StrandsClip.natural.fields
+---@return coif.StrandsClip
+function StrandsClip:natural(fields) end
+
+---What `StrandsClip:fill` takes.
+---@class (exact) coif.StrandsClip.fill.fields
+---@field strands? number # How many strands. [whole; 1 or more; default 40000]
+---@field nodes? number # Nodes per strand; when left out as many as the guides' bends need, at most as many as the guides have or 128. [whole; 2 to 4096]
+---@field neighbours? number # How many guides a strand follows at most. [whole; 1 to 8; default 4]
+---@field length_variation? number # How much shorter strands may be than their guides, as a part of the length. [0 to 1; default 0.05]
+---@field noise? number # Standard deviation of the gaussian noise on the tangents, smooth along the strand. [0 to 10; default 0.02]
+---@field flyaway? number # Part of the strands that stray, with six times the noise. [0 to 1; default 0]
+---@field clump? number # How far strands gather round their guide: 0 leaves them evenly spread, 1 brings all tips to the guide's tip. [0 to 1; default 0]
+---@field clump_start? number # Where along the strand gathering begins, as a part of the length. [0 to 0.95; default 0]
+---@field thickness? number # Depth of the layer of hair over the guides. [cm; 0 to 20; default 0.4]
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.03]
+---@field seed? number # Another seed gives other random numbers. [whole; default 0]
+---@field density? number # Strands per square centimetre, instead of `strands`. [1/cm^2; 0.0001 to 100000]
+---@field region? coif.Region # Where to fill; where the guides grow when left out.
+---@field material? coif.HairMaterial|coif.material.hair.fields # How the hair looks: `coif.material.hair { ... }`.
+
+---Fills the scalp with strands between guides in motion, as `Strands:fill` between guides. A strand follows the
+---same guides by the same parts at every frame.
+---@param fields? coif.StrandsClip.fill.fields
+---@return coif.StrandsClip
+function StrandsClip:fill(fields) end
+
+---The same strands with another look.
+---@param material coif.HairMaterial|coif.material.hair.fields # `coif.material.hair { ... }`, or its fields.
+---@return coif.StrandsClip
+function StrandsClip:material(material) end
+
 ---Figures: `frames`, `seconds`, `strands`, `points`, `guides`, `travel` (cm, the farthest that a node comes from
 ---where it is in the first frame), `stretch` (the greatest part by which a strand's length differs from that in
 ---the first frame), `min` and `max` (corners of the bounding box of all frames).

@@ -26,6 +26,25 @@ use crate::geometry::strands::StrandsError;
 use crate::geometry::{Mesh, Strands};
 use crate::scene::{Hair, Part};
 
+crate::choices! {
+    /// A file format.
+    pub enum Format {
+        /// Binary glTF: surfaces, and strands as ribbons or lines.
+        Glb = "glb",
+        /// USD as text: surfaces, strands and guides as curves.
+        Usda = "usda",
+        /// The `.hair` format: strands alone.
+        Hair = "hair",
+    }
+}
+
+impl Format {
+    /// What the names of its files end in, without a dot.
+    pub const fn ending(self) -> &'static str {
+        self.text()
+    }
+}
+
 /// Checks what every format relies on: finite nodes, and no strand that names a guide or source that is not there.
 fn check_hair(part: &Part, hair: &Hair) -> Result<(), ExportError> {
     for strands in [&hair.strands, &hair.guides] {

@@ -6,6 +6,7 @@
 mod budget;
 pub mod diff;
 mod figures;
+mod film;
 mod keep;
 mod new;
 mod output;
@@ -18,6 +19,7 @@ pub mod watch;
 
 pub use budget::{Budget, keep_within};
 pub use figures::{PartFigures, figures};
+pub use film::Films;
 pub use new::{DEFINITIONS, NewError, api, new};
 pub use output::{Output, WriteError, Written, write_all};
 pub use run::{Report, RunError, RunOptions, Stage, exports, preview, run};

@@ -148,10 +148,11 @@ fn refused(options: &ContactOptions, outcome: &Outcome) -> Vec<Diagnostic> {
 /// The pictures of one run, with the names of their views.
 fn pictures(
     options: &ContactOptions,
-    mut scene: Scene,
+    scene: Scene,
     background: Background,
     task: &Task,
 ) -> Result<(Vec<Picture>, Vec<String>), RunError> {
+    let mut scene = scene.still();
     scene.look.background = background;
     let own = scene.views.first().copied().unwrap_or(View::Front);
     let (sights, names): (Vec<Mat3>, Vec<String>) = match options.turntable {
