@@ -163,6 +163,7 @@ struct File<'a> {
 #[derive(Clone, Copy)]
 struct Place {
     node: u32,
+    parent: u32,
     mesh: Option<u32>,
 }
 
@@ -193,7 +194,7 @@ impl<'a> File<'a> {
         self.document.nodes.push(node);
         let parent = self.parent(part);
         self.document.nodes[parent as usize].children.push(index);
-        Place { node: index, mesh }
+        Place { node: index, parent, mesh }
     }
 
     fn strands(

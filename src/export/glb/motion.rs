@@ -1,6 +1,6 @@
 //! What moves in a file: nodes, morph targets, and the keys of both.
 //!
-//! One node carries everything that moves with the head, so that a part's own motion is written as seen from the head:
+//! One node carries everything that moves more with the head than by itself, so that a part's own motion is written as seen from the head:
 //! small, and in few shapes. What is at rest on the head needs no shapes at all.
 
 use glam::{Affine3A, Vec3};
@@ -43,6 +43,23 @@ struct Carrier {
     played: Vec<Placing>,
     keys: usize,
     error: f32,
+}
+
+impl Carrier {
+    /// True when points move less as seen from here than as seen from the scene.
+    fn carries<T>(&self, rest: &[Vec3], clip: &Clip<T>, points: impl Fn(&T) -> &[Vec3]) -> bool {
+        let (mut here, mut there) = (0.0_f64, 0.0_f64);
+        for (frame, placing) in clip.frames.iter().zip(&self.played) {
+            let by = placing.transform().inverse();
+            // Some hundred points tell.
+            let step = (rest.len() / 256).max(1);
+            for (now, rest) in points(frame).iter().zip(rest).step_by(step) {
+                here += f64::from(by.transform_point3(*now).distance_squared(*rest));
+                there += f64::from(now.distance_squared(*rest));
+            }
+        }
+        here < there
+    }
 }
 
 impl Film {
@@ -118,14 +135,23 @@ impl File<'_> {
         }
     }
 
-    /// The node that a part stands below.
+    /// The node that a part stands below: the carrier, when that does the greater part of its motion.
     pub(super) fn parent(&self, part: &Part) -> u32 {
-        let carrier = self.film.as_ref().and_then(|f| f.carrier.as_ref());
-        match (&part.motion, carrier) {
-            (Some(Motion::Rigid(clip)), Some(carrier)) if *clip == carrier.clip => carrier.node,
-            (Some(Motion::Surface(_) | Motion::Strands { .. }), Some(carrier)) => carrier.node,
-            _ => 0,
-        }
+        let Some(carrier) = self.film.as_ref().and_then(|f| f.carrier.as_ref()) else { return 0 };
+        let is_carried = match (&part.motion, &part.body) {
+            (Some(Motion::Rigid(clip)), _) => *clip == carrier.clip,
+            (Some(Motion::Surface(clip)), Body::Mesh(mesh, _)) => {
+                carrier.carries(&mesh.positions, clip, |f| f.as_slice())
+            }
+            (Some(Motion::Surface(clip)), Body::Locks(locks)) => {
+                carrier.carries(&locks.mesh.mesh.positions, clip, |f| f.as_slice())
+            }
+            (Some(Motion::Strands { strands, .. }), Body::Hair(hair)) => {
+                carrier.carries(&hair.strands.points, strands, |f| f.points.as_slice())
+            }
+            _ => false,
+        };
+        if is_carried { carrier.node } else { 0 }
     }
 
     /// The motion of a surface.
@@ -135,7 +161,7 @@ impl File<'_> {
             Some(Motion::Surface(clip)) => {
                 let unit = |normals: &[Vec3]| normals.iter().map(|n| n.try_normalize().unwrap_or(Vec3::Y)).collect();
                 let rest = Vertices { positions: mesh.positions.clone(), normals: unit(&mesh.normals) };
-                let unplaced = self.unplaced();
+                let unplaced = self.unplaced(place);
                 let at = |frame: usize| {
                     let by = unplaced(frame);
                     let still = &mesh.positions;
@@ -165,7 +191,7 @@ impl File<'_> {
         match &part.motion {
             Some(Motion::Rigid(clip)) => self.rigid(place, clip, drawn.strands.bounds()),
             Some(Motion::Strands { strands, .. }) => {
-                let unplaced = self.unplaced();
+                let unplaced = self.unplaced(place);
                 let at = |frame: usize| {
                     let now: Option<(&Strands, Affine3A)> = strands.at(frame).map(|s| (&**s, unplaced(frame)));
                     drawn.vertices(is_ribbons, now.as_ref().map(|(s, by)| (*s, by)))
@@ -178,8 +204,8 @@ impl File<'_> {
     }
 
     /// Leads from a frame to the carrier's own space, as the file has it.
-    fn unplaced(&self) -> impl Fn(usize) -> Affine3A + 'static {
-        let carrier = self.film.as_ref().and_then(|f| f.carrier.as_ref());
+    fn unplaced(&self, place: Place) -> impl Fn(usize) -> Affine3A + 'static {
+        let carrier = self.film.as_ref().and_then(|f| f.carrier.as_ref()).filter(|c| c.node == place.parent);
         let played = carrier.map(|c| c.played.clone()).unwrap_or_default();
         move |frame| played.get(frame).map_or(Affine3A::IDENTITY, |p| p.transform().inverse())
     }
