@@ -30,7 +30,7 @@ pub use error::GroomError;
 pub use fill::{Fill, FillOptions, Separated, fill};
 pub use grow::{Grow, GrowOptions, LocalOptions, grow};
 pub use guides::{GuideOptions, Guides};
-pub use moving::{Moving, deform_clip, fill_clip};
+pub use moving::{Moving, deform_clip, fill_clip, pass_through};
 pub use natural::{Deform, DeformOptions, Natural, NaturalQueue, Shape, deform, fade, ramp, scale};
 pub use queue::{Queue, QueueOptions, Stage, Walk};
 pub use region::BoxOptions;

@@ -7,15 +7,15 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Quat, Vec3};
 use rayon::prelude::*;
 
-use super::clear::{Clear, Outcome};
+use super::clear::{Clear, Outcome, Scratch};
 use super::error::GroomError;
 use super::fill::{Fill, Prepared, Worker, check, left_out, usual_nodes};
 use super::natural::{Deform, deform, deform_frame};
 use super::step::Body;
-use crate::geometry::{Clip, Root, Strands};
+use crate::geometry::{Clip, Root, Solid, Strands};
 use crate::task::{Task, Warned};
 
 /// Most memory of one clip, in 10^9 bytes.
@@ -184,4 +184,57 @@ pub fn deform_clip(
         Ok::<_, GroomError>(Arc::new(by.map_or_else(|| bent.clone(), |by| bent.transformed(by))))
     })?;
     Ok(Warned { value: Moving { rest, frames }, warnings })
+}
+
+/// Frames of strands on their way through poses, which are strands of one topology; `ways` says for each frame which
+/// pose it comes from, to which it goes, and what part of the way is done. Segments turn and keep their length: strands
+/// that are as long in all poses are so in all frames.
+///
+/// # Errors
+/// Poses of another topology than the first, more memory than a clip may take, cancelled.
+pub fn pass_through(
+    poses: &[Arc<Strands>],
+    ways: &[(usize, usize, f32)],
+    solid: Option<(&Solid, f32)>,
+    task: &Task,
+) -> Result<Vec<Arc<Strands>>, GroomError> {
+    let Some(first) = poses.first() else { return Err(GroomError::Nothing { what: "poses" }) };
+    for (i, pose) in poses.iter().enumerate() {
+        pose.validate()?;
+        if pose.offsets != first.offsets {
+            return Err(GroomError::Topology { frame: i + 1 });
+        }
+    }
+    check_memory(first.count(), first.points.len(), ways.len())?;
+    let frame = |&(from, to, t): &(usize, usize, f32)| -> Result<Arc<Strands>, GroomError> {
+        task.check()?;
+        let (Some(a), Some(b)) = (poses.get(from), poses.get(to)) else { return Ok(Arc::clone(first)) };
+        if t <= 0.0 || t >= 1.0 || from == to {
+            return Ok(Arc::clone(if t >= 1.0 { b } else { a }));
+        }
+        let strand = |scratch: &mut Scratch, i: usize| -> Vec<Vec3> {
+            let (a, b) = (a.strand(i), b.strand(i));
+            let mut at = a[0].lerp(b[0], t);
+            let mut points = vec![at];
+            for (a, b) in a.windows(2).zip(b.windows(2)) {
+                let (x, y) = (a[1] - a[0], b[1] - b[0]);
+                let (u, v) = (x.normalize_or_zero(), y.normalize_or_zero());
+                let way = Quat::IDENTITY.slerp(Quat::from_rotation_arc(u, v), t) * u;
+                at += way.normalize_or(u) * (x.length() + (y.length() - x.length()) * t);
+                points.push(at);
+            }
+            if let Some((solid, margin)) = solid {
+                Clear { body: Body { solid, margin } }.strand(&mut points, scratch);
+            }
+            points
+        };
+        let strands: Vec<Vec<Vec3>> = (0..a.count()).into_par_iter().map_init(Scratch::default, strand).collect();
+        let mut roots = a.roots.clone();
+        for (root, other) in roots.iter_mut().zip(&b.roots) {
+            root.position = root.position.lerp(other.position, t);
+            root.normal = root.normal.lerp(other.normal, t).normalize_or(root.normal);
+        }
+        Ok(Arc::new(Strands { points: strands.concat(), roots, ..without_nodes(a) }))
+    };
+    ways.iter().map(frame).collect()
 }

@@ -155,7 +155,7 @@ fn changed(before: Option<&Picture>, picture: &Picture) -> [u32; 4] {
     let rows = || picture.pixels.chunks_exact(row).zip(before.pixels.chunks_exact(row));
     let differs = |(a, b): &(&[u8], &[u8])| a != b;
     let Some(top) = rows().position(|r| differs(&r)) else { return [0, 0, 1, 1] };
-    let bottom = rows().enumerate().filter(|(_, r)| differs(r)).map(|(i, _)| i).last().unwrap_or(top);
+    let bottom = rows().rposition(|r| differs(&r)).unwrap_or(top);
     let (mut left, mut right) = (row, 0);
     for (a, b) in rows().skip(top).take(bottom - top + 1) {
         if let Some(first) = a.iter().zip(b).position(|(a, b)| a != b) {

@@ -148,3 +148,25 @@ fn frames_of_other_strands_and_too_many_frames_are_refused() {
     let frames = clip([rest.clone()]);
     assert!(matches!(fill_clip(&input, &frames, None, &cancelled), Err(GroomError::Cancelled(_))));
 }
+
+#[test]
+fn poses_are_passed_through_with_the_length_kept() {
+    let rest = Arc::new(guides());
+    let poses = [Arc::clone(&rest), Arc::new(swayed(&rest, 1.5)), Arc::new(swayed(&rest, -1.5))];
+    let ways: Vec<_> = (0..=20).map(|i| (1, 2, i as f32 / 20.0)).collect();
+    let frames = pass_through(&poses, &ways, None, &Task::new()).unwrap();
+    assert!(Arc::ptr_eq(&frames[0], &poses[1]) && Arc::ptr_eq(&frames[20], &poses[2]));
+    for frame in &frames {
+        frame.validate().unwrap();
+        for g in 0..12 {
+            assert!((frame.length(g) - rest.length(g)).abs() < 0.05 * rest.length(g), "{g}");
+        }
+    }
+    let most = farthest(&frames[0], &frames[20]);
+    assert!(frames.windows(2).all(|w| farthest(&w[0], &w[1]) < 3.0 * most / 20.0));
+    let mut other = Strands::clone(&rest);
+    other.points.pop();
+    *other.offsets.last_mut().unwrap() -= 1;
+    let poses = [rest, Arc::new(other)];
+    assert_eq!(pass_through(&poses, &ways, None, &Task::new()), Err(GroomError::Topology { frame: 2 }));
+}
