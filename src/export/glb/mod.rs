@@ -31,7 +31,7 @@ use self::document::{Buffer, Document, Extras, MeshEntry, Node, PartExtras, Prim
 use self::motion::Film;
 use self::shapes::{Drawn, METRES};
 use super::reduce::reduce;
-use super::{ExportError, check_hair, check_tolerance, with_normals};
+use super::{ExportError, check_hair, check_motion, check_tolerance, with_normals};
 use crate::geometry::{Mesh, Strands};
 use crate::scene::{Body, HairMaterial, Locks, Part, Scene};
 use crate::task::Task;
@@ -84,7 +84,7 @@ pub fn glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Vec<u8>, 
     let mut file = File::new(scene)?;
     file.begin(scene, options.motion_tolerance);
     for part in &scene.parts {
-        motion::check(part)?;
+        check_motion(part)?;
         match &part.body {
             Body::Mesh(mesh, look) => {
                 mesh.validate().map_err(|error| ExportError::Mesh { part: part.name.clone(), error })?;

@@ -13,7 +13,6 @@ use super::document::{
 use super::keys::{Placing, placings, reduce, share};
 use super::shapes::{Drawn, METRES};
 use super::{File, Job, Place};
-use crate::export::ExportError;
 use crate::geometry::{Bounds, Clip, Mesh, Strands};
 use crate::scene::{Body, Motion, Part, Scene, Timeline};
 use crate::task::{Cancelled, Task};
@@ -71,39 +70,6 @@ impl Film {
     fn extras(&self, shapes: usize, keys: usize, error_cm: f32) -> MotionExtras {
         let Timeline { frames, rate, looped } = self.timeline;
         MotionExtras { frames, rate, looped, shapes, keys, error_cm }
-    }
-}
-
-/// Checks what no frame may have: other topology, numbers that are none.
-///
-/// # Errors
-/// [`ExportError::Motion`] with the frame.
-pub fn check(part: &Part) -> Result<(), ExportError> {
-    let Some(motion) = &part.motion else { return Ok(()) };
-    let bad =
-        |frame: usize, what: &'static str| Err(ExportError::Motion { part: part.name.clone(), frame: frame + 1, what });
-    let points = |what: &[Vec3]| what.iter().all(|p| p.is_finite());
-    let count = match (&part.body, motion) {
-        (Body::Mesh(mesh, _), _) => mesh.positions.len(),
-        (Body::Locks(locks), _) => locks.mesh.mesh.positions.len(),
-        (Body::Hair(hair), _) => hair.strands.points.len(),
-    };
-    let found = match motion {
-        Motion::Rigid(clip) => clip.frames.iter().position(|t| !t.is_finite()).map(|f| (f, "is not finite")),
-        Motion::Surface(clip) => clip.frames.iter().enumerate().find_map(|(i, f)| match f {
-            f if f.len() != count => Some((i, "has another number of vertices than the part at rest")),
-            f if !points(f) => Some((i, "is not finite")),
-            _ => None,
-        }),
-        Motion::Strands { strands, .. } => strands.frames.iter().enumerate().find_map(|(i, f)| match f {
-            f if f.points.len() != count => Some((i, "has another number of nodes than the part at rest")),
-            f if !points(&f.points) => Some((i, "is not finite")),
-            _ => None,
-        }),
-    };
-    match found {
-        Some((frame, what)) => bad(frame, what),
-        None => Ok(()),
     }
 }
 

@@ -1,11 +1,11 @@
-//! Animated GLB files, read back and played by another reader than the one that wrote them.
+//! Files of scenes that move: GLB, played by another reader than the one that wrote them, and the time samples of USD.
 
 mod export_scene;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use coif::export::{ExportError, GlbOptions, StrandForm, glb};
+use coif::export::{ExportError, GlbOptions, StrandForm, UsdaOptions, glb, usda};
 use coif::geometry::{Clip, Mesh, Strands};
 use coif::math::trig;
 use coif::scene::{Body, MeshMaterial, Motion, Part, Scene};
@@ -295,4 +295,42 @@ fn frames_that_do_not_fit_are_refused() {
     let Some(Motion::Surface(clip)) = &mut scene.parts[2].motion else { panic!() };
     *clip = Clip { frames: vec![Arc::new(vec![Vec3::NAN; ball().positions.len()])], ..clip.clone() };
     assert!(matches!(refused(&scene), ExportError::Motion { frame: 1, .. }));
+}
+
+/// The numbers of the line that begins so, after a place in a text.
+fn numbers(text: &str, after: &str, line: &str) -> Vec<f32> {
+    let from = text.find(after).unwrap_or_else(|| panic!("no {after}"));
+    let at = text[from..].find(line).unwrap_or_else(|| panic!("no {line}")) + from + line.len();
+    let end = text[at..].find("]").unwrap() + at;
+    text[at..end].split(['(', ')', ',', ' ', '[', '\n']).filter_map(|w| w.parse().ok()).collect()
+}
+
+#[test]
+fn usd_has_a_sample_for_every_frame() {
+    let scene = moving(12, true);
+    let text = String::from_utf8(usda(&scene, &UsdaOptions::default(), &Task::new()).unwrap()).unwrap();
+    for line in ["startTimeCode = 0", "endTimeCode = 23", "timeCodesPerSecond = 12", "framesPerSecond = 12"] {
+        assert!(text.contains(line), "{line}");
+    }
+    for frame in [0, 7, FRAMES - 1] {
+        let flat = |points: &[Vec3]| points.iter().flat_map(|p| p.to_array()).collect::<Vec<_>>();
+        let near = |have: Vec<f32>, wanted: Vec<f32>| {
+            assert_eq!(have.len(), wanted.len());
+            assert!(have.iter().zip(&wanted).all(|(a, b)| (a - b).abs() < 2e-5), "{frame}");
+        };
+        let hair = &text[text.find("def BasisCurves \"hair\"").unwrap()..];
+        let still = scene.at(frame);
+        let (_, now) = still.hair().next().unwrap();
+        near(numbers(hair, "points.timeSamples", &format!("\n            {frame}: [")), flat(&now.strands.points));
+        let guides = &text[text.find("def BasisCurves \"hair_guides\"").unwrap()..];
+        near(numbers(guides, "points.timeSamples", &format!("\n            {frame}: [")), flat(&now.guides.points));
+        let surface = &text[text.find("def Mesh \"flag\"").unwrap()..];
+        near(numbers(surface, "points.timeSamples", &format!("\n            {frame}: [")), flat(&flag(frame)));
+        let place = numbers(&format!("{text}]"), "xformOp:transform.timeSamples", &format!("\n            {frame}: ("));
+        let wanted = glam::Mat4::from(head(frame)).to_cols_array();
+        assert!(place[..16].iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5));
+    }
+    // Still scenes have none.
+    let text = String::from_utf8(usda(&scene.at(3), &UsdaOptions::default(), &Task::new()).unwrap()).unwrap();
+    assert!(!text.contains("timeSamples") && !text.contains("TimeCode"));
 }
