@@ -519,6 +519,21 @@ function coif.ring(fields) end
 ---@return coif.HairMaterial
 function coif.material.hair(fields) end
 
+---What `coif.clip` takes.
+---@class (exact) coif.clip.fields
+---@field [integer] coif.Strands # The poses, two or more: strands of the same roots with the same numbers of nodes. The first is the rest.
+---@field seconds? number # Time from each pose to the next. [s; 0.01 to 3600; default 1]
+---@field rate? number # Frames in a second. [1/s; 1 to 240; default 24]
+---@field ease? "smooth"|"linear"|"in"|"out"|"hold" # How each pose is left and come to. [default "smooth"]
+---@field loop? boolean # True to go back from the last pose to the first, over and over. [default false]
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.05]
+
+---Strands on their way through poses: the same strands, styled in different ways. Strands bend from pose to pose
+---and keep their length.
+---@param fields coif.clip.fields
+---@return coif.StrandsClip
+function coif.clip(fields) end
+
 ---What `coif.scene` takes.
 ---@class (exact) coif.scene.fields
 ---@field [integer] any # The head and the hair, in any number and order; lists in the list are taken apart.
@@ -964,8 +979,9 @@ function Test:run(script, parameters) end
 
 ---A scene that the test itself made, with its parts by name.
 ---@param scene coif.Scene # What `coif.scene` gave.
+---@param frame? number # Of a scene that moves, which frame, from 1; the one that its still pictures show when left out. [whole; 1 to 1000000000]
 ---@return coif.TestScene
-function Test:scene(scene) end
+function Test:scene(scene, frame) end
 
 ---Expects two values to be the same: numbers, texts, vectors, or tables of them, entry by entry.
 ---@param got? any # What there is.
@@ -1023,6 +1039,7 @@ function Test:error(body, text) end
 ---@field size? number # Width of one view in pixels; its height is nine eighths of it. [whole; px; 16 to 1024; default 120]
 ---@field tolerance? number # How far a channel of a pixel may differ, out of 255. [whole; 0 to 255; default 1]
 ---@field background? "white"|"dark" # The colour behind everything, instead of the scene's own.
+---@field frame? number # Of a scene that moves, which frame, from 1; the scene's own when left out. [whole; 1 to 1000000000]
 
 ---Expects the preview of a scene to be the golden picture `golden/NAME.png` beside the test.
 ---@param scene coif.TestScene|coif.Scene # What `t:run` gave, or a scene.
@@ -1042,6 +1059,12 @@ local TestScene = {}
 ---@param parameters table<string, any> # Parameters by name.
 ---@return coif.TestScene
 function TestScene:with(parameters) end
+
+---A scene that moves as it is at a frame; its figures are then those of that frame. Without it they are those of
+---the frame that still pictures show.
+---@param frame number # Which frame, from 1; past the end a loop begins anew, anything else stands still. [whole; 1 to 1000000000]
+---@return coif.TestScene
+function TestScene:at(frame) end
 
 ---The figures of all parts together; see `TestPart:stats`.
 ---@return table<string, any>

@@ -1,5 +1,10 @@
 -- Every moving example: what holds from frame to frame, and golden pictures of two frames.
 
+local views = {
+  look_around = "front",
+  sway        = "back",
+}
+
 coif.test("look_around", function(t)
   local scene = t:run("../../examples/moving/look_around.lua", {})
   local first, left = scene:at(1), scene:at(14)
@@ -8,8 +13,8 @@ coif.test("look_around", function(t)
   t:ok(first.tufts:stats().max ~= left.tufts:stats().max)
   -- A loop begins anew.
   t:near(scene:at(73).tufts:stats().max, first.tufts:stats().max, 1e-4)
-  t:preview(scene, "moving_look_around", { frame = 14, size = 120 })
-  t:preview(scene, "moving_look_around_nod", { frame = 60, size = 120 })
+  t:preview(scene, "moving_look_around", { frame = 14, size = 120, views = { views.look_around } })
+  t:preview(scene, "moving_look_around_nod", { frame = 60, size = 120, views = { views.look_around } })
 end)
 
 coif.test("sway", function(t)
@@ -23,8 +28,8 @@ coif.test("sway", function(t)
   -- From one side to the other.
   t:greater(first.max.x, last.max.x)
   t:less(last.min.x, first.min.x)
-  t:preview(scene, "moving_sway", { frame = 1, size = 120, views = { "back" } })
-  t:preview(scene, "moving_sway_middle", { frame = 10, size = 120, views = { "back" } })
+  t:preview(scene, "moving_sway", { frame = 1, size = 120, views = { views.sway } })
+  t:preview(scene, "moving_sway_middle", { frame = 10, size = 120, views = { views.sway } })
 end)
 
 coif.test("clips", function(t)
