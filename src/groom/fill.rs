@@ -159,11 +159,16 @@ pub(super) fn check(input: &Fill) -> Result<usize, GroomError> {
     }
     check_value("the noise", options.noise, 0.0, f32::MAX)?;
     check_value("the thickness", options.thickness, 0.0, f32::MAX)?;
-    let nodes = options.nodes.unwrap_or_else(|| usual_nodes(input.guides)).max(2);
+    let nodes = member_nodes(input.guides, options);
     let n = input.roots.len();
     check_size(n as u64, n as u64 * nodes as u64)?;
     input.roots.iter().try_for_each(check_root)?;
     Ok(nodes)
+}
+
+/// Nodes that every member has.
+pub fn member_nodes(guides: &Strands, options: &FillOptions) -> usize {
+    options.nodes.unwrap_or_else(|| usual_nodes(guides)).max(2)
 }
 
 /// Farthest that a member's segment may lie from the arc that it stands for, cm: half a pixel of a picture of 1024.

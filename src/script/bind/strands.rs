@@ -3,15 +3,18 @@
 use std::sync::Arc;
 
 use super::super::call::{Call, Result};
+use super::super::limits::Need;
 use super::super::registry::{Entry, Getter, Noun};
 use super::clip::MovingStrands;
 use super::head::give;
 use super::overlay;
 use super::region::Area;
-use crate::geometry::{Root, Strands};
+use crate::geometry::{Clip, Root, Strands};
 use crate::groom::{
-    Deform, DeformOptions, Fill, FillOptions, NaturalQueue, count_inside, deform, deform_clip, fill, fill_clip,
+    Deform, DeformOptions, Fill, FillOptions, NaturalQueue, count_inside, deform, deform_clip, deformed_points, fill,
+    fill_clip, member_nodes,
 };
+use crate::head::MOST_ROOTS;
 use crate::math::Digest;
 use crate::params::{Object, Table, Value};
 use crate::scene::{HairMaterial, Overlay};
@@ -31,6 +34,8 @@ pub struct Lock {
     pub overlay: Arc<Overlay>,
     /// Place in the script that made them.
     pub source: Arc<str>,
+    /// How many strands each of them stands for: 1, but in a draft more.
+    pub stands_for: f32,
 }
 
 impl Object for Lock {
@@ -157,6 +162,11 @@ fn natural(call: &Call) -> Result<Value> {
     key.key(call.session.options.memo.content(&this.strands));
     naturals.digest(&this, &mut key);
     let input = naturals.input(&this);
+    let points = match call.session.options.memo.get::<Strands>(key.finish()) {
+        Some((known, _)) => known.points.len(),
+        None => deformed_points(&input, call.task()).map_err(|e| call.groom(&e))?,
+    };
+    call.claim("", Need { points: points as u64, ..Need::strands(this.strands.count(), 0) })?;
     let make = || deform(&input, call.task()).map_err(|e| call.groom(&e));
     let strands = call.memo_strands(&key, &this.strands.sources, make)?;
     Ok(give(naturals.lock(&this, strands)))
@@ -171,6 +181,11 @@ pub fn natural_clip(call: &Call) -> Result<Value> {
     naturals.digest(&this.rest, &mut key);
     let input = naturals.input(&this.rest);
     let head = this.motion.as_ref().map(|m| &m.clip);
+    let points = deformed_points(&input, call.task()).map_err(|e| call.groom(&e))?;
+    call.claim(
+        "",
+        frames(Need { points: points as u64, ..Need::strands(this.rest.strands.count(), 0) }, &this.strands),
+    )?;
     let make = || deform_clip(&input, &this.strands, head, call.task()).map_err(|e| call.groom(&e));
     let moving = call.memo_moving(&key, &this.rest.strands.sources, make)?;
     let is_guide = Arc::ptr_eq(&this.rest.strands, &this.rest.guides);
@@ -185,12 +200,16 @@ struct Filling {
     options: FillOptions,
     material: Option<Look>,
     area: Area,
+    /// All of them.
     roots: Arc<Vec<Root>>,
+    /// How many of these grow, fewer for a draft: the first of their order are a sparser fill of the same region.
+    few: usize,
     source: Arc<str>,
 }
 
 impl Filling {
-    fn read(call: &Call, lock: &Lock) -> Result<Self> {
+    /// `times` is how often every strand is there: once, or in every frame.
+    fn read(call: &Call, lock: &Lock, times: impl Fn(Need) -> Need) -> Result<Self> {
         let (mut options, extras) = call.read_both::<FillOptions, FillExtras>()?;
         options.seed = call.seed(options.seed);
         let area = match &extras.region {
@@ -201,8 +220,19 @@ impl Filling {
             Some(area) => Area::clone(area),
             None => lock.area.clone(),
         };
+        let draft = call.session.options.draft;
+        let few = |count: usize| draft.map_or(count, |most| count.min(most.max(1)));
+        let nodes = member_nodes(&lock.strands, &options);
+        // What is refused whatever the limits has words of its own.
+        if extras.density.is_none() && options.strands <= MOST_ROOTS {
+            call.claim("strands", times(Need::strands(few(options.strands), nodes)))?;
+        }
         let roots = area.roots(call, ("strands", options.strands), extras.density, options.seed)?;
-        Ok(Self { options, material: extras.material, area, roots, source: call.source() })
+        let few = few(roots.len());
+        if extras.density.is_some() {
+            call.claim("density", times(Need::strands(few, nodes)))?;
+        }
+        Ok(Self { options, material: extras.material, area, roots, few, source: call.source() })
     }
 
     /// Calls `make` with what the core takes.
@@ -211,7 +241,7 @@ impl Filling {
         let separated = |a, b| partings.iter().any(|p| p.separates(a, b));
         make(&Fill {
             guides: &lock.strands,
-            roots: &self.roots,
+            roots: &self.roots[..self.few],
             options: &self.options,
             separated: (!partings.is_empty()).then_some(&separated),
             solid: Some(&self.area.head.solid),
@@ -219,8 +249,22 @@ impl Filling {
         })
     }
 
-    fn digest(&self, lock: &Lock, into: &mut Digest) {
-        into.key(self.area.head.key()).data(&self.options).packed(&self.roots, Root::bytes).data(&lock.area.partings);
+    /// The key for so many of the roots.
+    fn key(&self, mut key: Digest, count: usize, lock: &Lock) -> Digest {
+        let roots = &self.roots[..count];
+        key.key(self.area.head.key()).data(&self.options).packed(roots, Root::bytes).data(&lock.area.partings);
+        key
+    }
+
+    /// Notes that a draft grows fewer strands; `is_known` says that all of them are there already.
+    fn thin(&self, call: &Call, is_known: bool) {
+        if call.session.options.draft.is_some() {
+            let mut thinned = call.session.thinned.get();
+            thinned.members += self.few;
+            thinned.of += self.roots.len();
+            thinned.pending += if is_known { 0 } else { self.roots.len() };
+            call.session.thinned.set(thinned);
+        }
     }
 
     /// The filled lock.
@@ -232,16 +276,22 @@ impl Filling {
             material: self.material.as_ref().map_or_else(|| lock.material.clone(), |look| look.0.clone()),
             overlay: Arc::clone(&lock.overlay),
             source: Arc::clone(&self.source),
+            stands_for: self.roots.len() as f32 / self.few.max(1) as f32,
         }
     }
 }
 
 fn fill_strands(call: &Call) -> Result<Value> {
     let this = call.this::<Lock>()?;
-    let filling = Filling::read(call, &this)?;
-    let mut key = Digest::new("fill 1");
-    key.key(call.session.options.memo.content(&this.strands));
-    filling.digest(&this, &mut key);
+    let filling = Filling::read(call, &this, |need| need)?;
+    let memo = &call.session.options.memo;
+    let key = |count| {
+        let mut key = Digest::new("fill 1");
+        key.key(memo.content(&this.strands));
+        filling.key(key, count, &this)
+    };
+    filling.thin(call, memo.has(key(filling.roots.len()).finish()));
+    let key = key(filling.few);
     let made = || filling.with(&this, |input| fill(input, call.task()).map_err(|e| call.groom(&e)));
     let strands = call.memo_strands(&key, &[Arc::clone(&filling.source)], made)?;
     Ok(give(filling.lock(&this, strands)))
@@ -250,10 +300,14 @@ fn fill_strands(call: &Call) -> Result<Value> {
 /// `StrandsClip:fill`.
 pub fn fill_clip_strands(call: &Call) -> Result<Value> {
     let this = call.this::<MovingStrands>()?;
-    let filling = Filling::read(call, &this.rest)?;
-    let mut key = Digest::new("fill clip 1");
-    key.key(this.key);
-    filling.digest(&this.rest, &mut key);
+    let filling = Filling::read(call, &this.rest, |need| frames(need, &this.strands))?;
+    let key = |count| {
+        let mut key = Digest::new("fill clip 1");
+        key.key(this.key);
+        filling.key(key, count, &this.rest)
+    };
+    filling.thin(call, call.session.options.memo.has(key(filling.roots.len()).finish()));
+    let key = key(filling.few);
     let head = this.motion.as_ref().map(|m| &m.clip);
     let made = || {
         let make = |input: &Fill| fill_clip(input, &this.strands, head, call.task()).map_err(|e| call.groom(&e));
@@ -270,6 +324,16 @@ pub fn material_clip(call: &Call) -> Result<Value> {
     let (this, fields) = (call.this::<MovingStrands>()?, call.read::<MaterialFields>()?);
     let rest = Lock { material: fields.material.0, ..this.rest.clone() };
     Ok(give(MovingStrands { rest, ..MovingStrands::clone(&this) }))
+}
+
+/// What something takes in every frame of a clip, and at rest.
+fn frames(once: Need, clip: &Clip<Strands>) -> Need {
+    let count = clip.count() as u64 + 1;
+    Need {
+        strands: once.strands.saturating_mul(count),
+        points: once.points.saturating_mul(count),
+        triangles: once.triangles,
+    }
 }
 
 fn material(call: &Call) -> Result<Value> {
