@@ -45,6 +45,7 @@ pub fn registry() -> Registry {
         piece::functions(),
         animate::functions(),
         material::functions(),
+        clip::functions(),
         scene::functions(),
     ];
     let nouns = [
