@@ -25,6 +25,9 @@ const MOST_ITERATIONS: u32 = 60;
 /// What a weight beyond the states costs: its distance from 0..=1, squared, times this. A residual of a tenth is a hundredth
 /// squared, so a weight of 2 is taken for that, but not one of 6.
 const BLENDING: f64 = 0.01;
+/// A frame further than this from its blend is looked for from every state too, and the other place is taken when its energy
+/// is less than a quarter: going on from frame to frame may end where the states do not lead.
+const SUSPECT: f64 = 0.15;
 /// Keeps the small system solvable where weights make no difference: states that are alike.
 const FLOOR: f64 = 1e-9;
 
@@ -35,8 +38,7 @@ pub struct Posed {
     pub weights: Vec<f64>,
     /// Iterations made, all starts together.
     pub iterations: u32,
-    /// How far the triangles are from the blend of the states: the root mean square over the area of how much a length
-    /// differs, 0 for a state itself, 0.1 for 10 %.
+    /// How far the triangles are from the blend of the states: the root mean square of how much a length differs, 0 for a state itself, 0.1 for 10 %.
     pub residual: f64,
     /// Greatest movement of a vertex in the last iteration, cm.
     pub step: f64,
@@ -108,11 +110,16 @@ impl<'a> Poser<'a> {
         assert_eq!((targets.len(), out.len()), (self.rig.handles(), self.rig.rest.len()));
         self.fix(targets);
         let mut iterations = 0;
-        let mut best = None;
+        let (mut best, mut warm) = (None, None);
         if let Some(start) = self.warm() {
             let descent = self.descend(start);
             iterations += descent.iterations;
-            best = descent.converged.then_some(descent);
+            let suspect = self.residual(&descent) > SUSPECT;
+            match descent.converged {
+                true if suspect => warm = Some(descent),
+                true => best = Some(descent),
+                false => {}
+            }
         }
         let best = best.unwrap_or_else(|| {
             let states = self.rig.states;
@@ -123,9 +130,11 @@ impl<'a> Poser<'a> {
             let last = descents.len() - 1;
             let (at, best) =
                 descents.into_iter().enumerate().min_by(|a, b| better(&a.1, &b.1)).unwrap_or_else(|| unreachable!());
-            if at == last {
-                return best;
-            }
+            let best = match warm {
+                Some(warm) if best.energy > 0.25 * warm.energy => warm,
+                _ if at == last => return best,
+                _ => best,
+            };
             // The places are those of the last descent: go to the best once more.
             let again = self.descend(best.weights);
             iterations += again.iterations;
@@ -133,10 +142,14 @@ impl<'a> Poser<'a> {
         });
         self.write(targets, out);
         self.weights = [Some(best.weights.clone()), self.weights[0].take()];
-        let mut blending = Small { energy: 0.0, slope: [0.0; FIELDS], hessian: [[0.0; FIELDS]; FIELDS] };
-        self.blended(&best.weights, &mut blending);
-        let residual = (best.energy - blending.energy).max(0.0).sqrt();
+        let residual = self.residual(&best);
         Posed { weights: best.weights, iterations, residual, step: best.step, converged: best.converged }
+    }
+
+    fn residual(&self, found: &Descent) -> f64 {
+        let mut blending = Small { energy: 0.0, slope: [0.0; FIELDS], hessian: [[0.0; FIELDS]; FIELDS] };
+        self.blended(&found.weights, &mut blending);
+        (found.energy - blending.energy).max(0.0).sqrt()
     }
 
     /// Where the last two frames lead.

@@ -230,7 +230,7 @@ struct Plain {
     triangles: Vec<[usize; 3]>,
     /// Per state and triangle: rotation vector and stretch.
     states: Vec<Vec<(DVec3, DMat3)>>,
-    weights: Vec<f64>,
+    weight: f64,
 }
 
 impl Plain {
@@ -247,13 +247,11 @@ impl Plain {
             let (r, s) = super::rotation::polar(gradient).unwrap();
             (super::rotation::logarithm(r), s)
         };
-        let area = |t: &[usize; 3]| (rest[t[1]] - rest[t[0]]).cross(rest[t[2]] - rest[t[0]]).length();
-        let whole: f64 = triangles.iter().map(area).sum();
         Self {
             rest: rest.to_vec(),
             triangles: triangles.to_vec(),
             states: poses.iter().map(|p| triangles.iter().map(|t| change(p, t)).collect()).collect(),
-            weights: triangles.iter().map(|t| (area(t) / whole).sqrt()).collect(),
+            weight: (1.0 / triangles.len() as f64).sqrt(),
         }
     }
 
@@ -270,7 +268,7 @@ impl Plain {
                 stretch += (s[i].1 - DMat3::IDENTITY) * *w;
             }
             let d = gradient - super::rotation::exponential(turn) * stretch;
-            out.extend(d.to_cols_array().map(|n| n * self.weights[i]));
+            out.extend(d.to_cols_array().map(|n| n * self.weight));
         }
         out
     }
