@@ -554,5 +554,5 @@ fn a_path_that_is_too_short_for_the_lock_does_not_run_away_into_the_weights() {
     assert!(most < 2.0, "{most}");
     // It ends in the state that has the handle there.
     let last = made.value.posed.last().unwrap();
-    assert!(last.residual < 1e-5 && (last.weights[1] - 1.0).abs() < 1e-3, "{last:?}");
+    assert!(last.residual < 1e-4 && (last.weights[1] - 1.0).abs() < 1e-3, "{last:?}");
 }
