@@ -7,7 +7,7 @@ use std::sync::Arc;
 use coif::export::{CyHairOptions, GlbOptions, StrandForm, UsdaOptions, cyhair, glb, usda};
 use coif::geometry::{Root, Strands};
 use coif::math::{rng::Key, trig};
-use coif::scene::{Body, Hair, HairMaterial, Look, Overlay, Part, Scene, View};
+use coif::scene::{Body, Hair, HairMaterial, Look, Overlay, Part, Scene, Shown, View};
 use coif::task::Task;
 use divan::Bencher;
 use divan::counter::BytesCount;
@@ -57,10 +57,11 @@ fn scene() -> Scene {
     };
     Scene {
         name: "bench".into(),
-        parts: vec![Part { name: "hair".into(), source: String::new(), body: Body::Hair(hair) }],
+        parts: vec![Part { name: "hair".into(), source: String::new(), body: Body::Hair(hair), motion: None }],
         views: vec![View::Front],
         look: Look::default(),
         placement: Affine3A::IDENTITY,
+        shown: Shown::default(),
     }
 }
 

@@ -8,7 +8,7 @@ use coif::geometry::{Mesh, Root, Strands};
 use coif::math::rng::Key;
 use coif::math::trig::{cos, sin};
 use coif::render::{self, SheetOptions, Speed};
-use coif::scene::{Body, Hair, HairMaterial, Look, MeshMaterial, Overlay, Part, Scene, View};
+use coif::scene::{Body, Hair, HairMaterial, Look, MeshMaterial, Overlay, Part, Scene, Shown, View};
 use coif::task::Task;
 use divan::Bencher;
 use glam::{Affine3A, Vec2, Vec3};
@@ -79,12 +79,13 @@ fn scene() -> Scene {
     Scene {
         name: "bench".into(),
         parts: vec![
-            Part { name: "head".into(), source: String::new(), body: head },
-            Part { name: "hair".into(), source: String::new(), body: Body::Hair(hair) },
+            Part { name: "head".into(), source: String::new(), body: head, motion: None },
+            Part { name: "hair".into(), source: String::new(), body: Body::Hair(hair), motion: None },
         ],
         views: VIEWS.to_vec(),
         look: Look::default(),
         placement: Affine3A::IDENTITY,
+        shown: Shown::default(),
     }
 }
 

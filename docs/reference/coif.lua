@@ -526,6 +526,9 @@ function coif.material.hair(fields) end
 ---@field background? "white"|"dark" # The colour behind everything. [default "white"]
 ---@field shading? "soft"|"toon" # How surfaces and light are drawn. [default "soft"]
 ---@field skin? coif.Colour # Colour of the head. [default "#d9b8a3"]
+---@field motion? coif.Motion # How the head moves: `head:motion { ... }`. What is on it moves with it, but for hair whose own motion was made with this one; when there is such hair, this may be left out.
+---@field still? number # Of a scene that moves, the frame of still pictures, from 1; the middle one when left out. [whole; 1 to 1000000000]
+---@field strip? number[] # Of a scene that moves, the frames of the strip, from 1; eight of them, evenly, when left out.
 
 ---Puts together what the pictures and files show. A script ends with `return coif.scene { head, hair }`.
 ---@param fields? coif.scene.fields
@@ -608,6 +611,28 @@ function Head:mask(file) end
 ---@param fields coif.Head.parting.fields
 ---@return coif.Parting
 function Head:parting(fields) end
+
+---The poses, in the order of their times.
+---@class (exact) coif.Head.motion.poses
+---@field time number # When, from the motion's beginning. [s; 0 to 3600]
+---@field yaw? number # Turned to the head's left. [degrees; -3600 to 3600; default 0]
+---@field pitch? number # Nodded down. [degrees; -3600 to 3600; default 0]
+---@field roll? number # Tilted to the head's left shoulder. [degrees; -3600 to 3600; default 0]
+---@field shift? coif.Point # Moved, to the head's left, up, to the front. [cm; default { 0, 0, 0 }]
+---@field ease? "smooth"|"linear"|"in"|"out"|"hold" # How it is come to from the pose before. [default "smooth"]
+
+---What `Head:motion` takes.
+---@class (exact) coif.Head.motion.fields
+---@field [integer] coif.Head.motion.poses # The poses, in the order of their times.
+---@field rate? number # Frames in a second. [1/s; 1 to 240; default 24]
+---@field loop? boolean # True when the motion begins anew after the last pose, which must then be as the first. [default false]
+---@field pivot? coif.Point # What it turns about; the joint of the neck when left out. [cm]
+
+---A motion of the head, by its poses at times: the head turns about the joint of its neck. In a scene (`motion`)
+---everything on the head moves with it.
+---@param fields coif.Head.motion.fields
+---@return coif.Motion
+function Head:motion(fields) end
 
 ---A line on the scalp that strands never blend across.
 ---@class coif.Parting
@@ -758,6 +783,48 @@ function Strands:material(material) end
 ---or a segment inside the head), `min` and `max` (corners of the bounding box).
 ---@return table<string, any>
 function Strands:stats() end
+
+---Strands in motion: frames at equal distances in time. What takes strands takes them frame by frame.
+---@class coif.StrandsClip
+---@field count number # How many strands.
+---@field frames number # How many frames.
+---@field rate number # Frames in a second.
+---@field seconds number # How long it lasts.
+---@field loops boolean # True when the first frame follows the last.
+local StrandsClip = {}
+
+---The strands of one frame.
+---@param frame number # Which frame, from 1; past the end a loop begins anew, anything else stands still. [whole; 1 to 1000000000]
+---@return coif.Strands
+function StrandsClip:frame(frame) end
+
+---Figures: `frames`, `seconds`, `strands`, `points`, `guides`, `travel` (cm, the farthest that a node comes from
+---where it is in the first frame), `stretch` (the greatest part by which a strand's length differs from that in
+---the first frame), `min` and `max` (corners of the bounding box of all frames).
+---@return table<string, any>
+function StrandsClip:stats() end
+
+---Stylised hair in motion: frames of its surface at equal distances in time.
+---@class coif.LocksClip
+---@field frames number # How many frames.
+---@field rate number # Frames in a second.
+---@field seconds number # How long it lasts.
+---@field loops boolean # True when the first frame follows the last.
+local LocksClip = {}
+
+---A motion of the head; made by `Head:motion`.
+---@class coif.Motion
+---@field frames number # How many frames.
+---@field rate number # Frames in a second.
+---@field seconds number # How long it lasts.
+---@field loops boolean # True when the first frame follows the last.
+local Motion = {}
+
+---Where a place of the head at rest is at a frame.
+---@param point coif.Point # The place at rest. [cm]
+---@param frame number # Which frame, from 1; past the end a loop begins anew, anything else stands still. [whole; 1 to 1000000000]
+---@return vector
+function Motion:place(point, frame) end
 
 ---A box, whose axes may be turned.
 ---@class coif.Box

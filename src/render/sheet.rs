@@ -40,13 +40,16 @@ pub struct SheetOptions {
     pub columns: Option<u32>,
     /// Samples per pixel along each side, 1 to 4: 1 while watching, 2 for a picture that is kept.
     pub supersample: u32,
+    /// Width of a drawn strand as a multiple of its own, 1 to 64: hair thinned out to one strand in eight looks as dense as
+    /// the whole when each is drawn eight times as wide.
+    pub stroke: f32,
     /// Names, figures and a scale bar around the views.
     pub lettering: bool,
 }
 
 impl Default for SheetOptions {
     fn default() -> Self {
-        Self { width: 640, height: 720, columns: None, supersample: 2, lettering: true }
+        Self { width: 640, height: 720, columns: None, supersample: 2, stroke: 1.0, lettering: true }
     }
 }
 
@@ -68,6 +71,12 @@ pub enum RenderError {
         /// Most allowed.
         most: u32,
     },
+    /// A stroke that is not between its limits.
+    #[error("a stroke of `{value}` is not between 1 and {MOST_STROKE}")]
+    Stroke {
+        /// Its value.
+        value: f32,
+    },
     /// All views together are too many pixels.
     #[error("a sheet of {width} x {height} pixels is more than the {most} million that fit in memory")]
     TooLarge {
@@ -85,6 +94,9 @@ const FADE: f32 = 0.10;
 
 /// Most pixels of a sheet, in millions.
 pub(super) const MOST_PIXELS: u64 = 200;
+
+/// Largest multiple of a strand's width.
+const MOST_STROKE: f32 = 64.0;
 
 /// Where everything stands on the sheet, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,6 +128,9 @@ impl Layout {
             if value < least || value > most {
                 return Err(RenderError::Size { what, value, least, most });
             }
+        }
+        if !(1.0..=MOST_STROKE).contains(&options.stroke) {
+            return Err(RenderError::Stroke { value: options.stroke });
         }
         let n = views.max(1) as u32;
         let columns = options.columns.unwrap_or(match n {
@@ -172,7 +187,7 @@ pub fn sheet(scene: &Scene, options: &SheetOptions, task: &Task) -> Result<Pictu
     let layout = Layout::new(views.len(), options)?;
     let paper = paper(scene.look.background);
     task.progress("density", 0.0);
-    let stage = Stage::new(scene, task)?;
+    let stage = Stage::new(scene, options.stroke, task)?;
     task.progress("framing", 0.0);
     let sights: Vec<Mat3> = views.iter().map(|&view| axes(view)).collect();
     let framing = frame(scene, &sights);
@@ -209,7 +224,7 @@ pub fn views(
 ) -> Result<Vec<Picture>, RenderError> {
     Layout::new(sights.len(), &SheetOptions { lettering: false, columns: None, ..*options })?;
     let paper = paper(scene.look.background);
-    let stage = Stage::new(scene, task)?;
+    let stage = Stage::new(scene, options.stroke, task)?;
     let own = if framing.is_none() { Some(frame(scene, sights)) } else { None };
     let Some(framing) = framing.or(own.as_ref()) else { return Ok(vec![]) };
     sights
@@ -263,7 +278,7 @@ struct Stage {
 }
 
 impl Stage {
-    fn new(scene: &Scene, task: &Task) -> Result<Self, Cancelled> {
+    fn new(scene: &Scene, stroke: f32, task: &Task) -> Result<Self, Cancelled> {
         let mut meshes = Vec::new();
         // Flat tones need neither shadows in hair nor a sky.
         if scene.look.shading == Shading::Toon && !scene.look.debug {
@@ -292,7 +307,10 @@ impl Stage {
         let hair: Vec<(&Strands, f32, f32)> = scene
             .hair()
             .filter(|_| !scene.look.debug)
-            .map(|(_, h)| (&*h.strands, h.material.width, h.material.width * h.material.taper))
+            .map(|(_, h)| {
+                let width = h.material.width * stroke;
+                (&*h.strands, width, width * h.material.taper)
+            })
             .collect();
         let shapes: Vec<&Mesh> = meshes.iter().map(|(m, ..)| m).collect();
         let density = density(&hair, &shapes, task)?;
@@ -335,7 +353,7 @@ impl Stage {
         let drawing = scene.look.debug.then(|| overlay::draw(scene, camera, pen));
         let mut bundles: Vec<Bundle> = match &drawing {
             Some(drawing) => drawing.wires.iter().map(|w| w.bundle(ss as f32)).collect(),
-            None => scene.hair().map(|(_, hair)| bundle(hair, fine.scale)).collect(),
+            None => scene.hair().map(|(_, hair)| bundle(hair, fine.scale * options.stroke)).collect(),
         };
         let flat: Vec<Vec<Vec3>> = match &self.toon {
             Some(toon) => scene.hair().map(|(_, hair)| toon.strands(hair, &fine)).collect(),
@@ -359,6 +377,7 @@ impl Stage {
     }
 }
 
+/// `scale`: pixels per cm of a strand's width.
 fn bundle(hair: &crate::scene::Hair, scale: f32) -> Bundle<'_> {
     let width = hair.material.width * scale;
     Bundle {

@@ -6,7 +6,7 @@ use glam::{Affine3A, Vec2, Vec3};
 
 use crate::geometry::{Mesh, Root, Strands};
 use crate::math::{Colour, rng::Key};
-use crate::scene::{Background, Body, Hair, HairMaterial, Look, MeshMaterial, Overlay, Part, Scene, View};
+use crate::scene::{Background, Body, Hair, HairMaterial, Look, MeshMaterial, Overlay, Part, Scene, Shown, View};
 use crate::task::Task;
 
 use super::{Picture, RenderError, SheetOptions, sheet};
@@ -58,11 +58,11 @@ fn ball(r: f32) -> Part {
 }
 
 fn scene(parts: Vec<Part>, views: &[View]) -> Scene {
-    Scene { name: "test".into(), parts, views: views.to_vec(), look: Look::default(), placement: Affine3A::IDENTITY }
+    Scene { name: "test".into(), parts, views: views.to_vec(), look: Look::default(), placement: Affine3A::IDENTITY, shown: Shown::default() }
 }
 
 fn bare(width: u32, height: u32) -> SheetOptions {
-    SheetOptions { width, height, columns: None, supersample: 1, lettering: false }
+    SheetOptions { width, height, columns: None, supersample: 1, stroke: 1.0, lettering: false }
 }
 
 fn draw(scene: &Scene, options: &SheetOptions) -> Picture {
@@ -134,6 +134,27 @@ fn coverage_is_proportional_to_width() {
             assert!((more / one / times - 1.0).abs() < 0.08, "{times} times as wide: {more} for {one}");
         }
     }
+}
+
+#[test]
+fn thinned_hair_with_a_broader_stroke_is_as_dense() {
+    // A fringe of parallel strands: all of them, and every eighth eight times as wide.
+    let fringe = |step: usize| -> Vec<Vec<Vec3>> {
+        let strand = |i: usize| {
+            let key = Key::new(3, "fringe").with(i as u64);
+            let (x, z) = (key.unit() * 10.0 - 5.0, key.with(1).unit());
+            (0..=8).map(|k| Vec3::new(x, 4.0 - k as f32, z)).collect()
+        };
+        (0..1600).step_by(step).map(strand).collect()
+    };
+    let covered = |lines: &[Vec<Vec3>], stroke: f32| {
+        let options = SheetOptions { stroke, ..bare(256, 256) };
+        let p = draw(&scene(vec![part("hair", lines, 0, 0.004)], &[View::Front]), &options);
+        p.pixels.iter().map(|&c| 1.0 - Colour::new(f32::from(c) / 255.0, 0.0, 0.0).to_linear().x).sum::<f32>()
+    };
+    let (whole, thinned, thin) = (covered(&fringe(1), 1.0), covered(&fringe(8), 8.0), covered(&fringe(8), 1.0));
+    assert!((thinned / whole - 1.0).abs() < 0.06, "{thinned} of {whole}");
+    assert!(thin < 0.3 * whole, "{thin} of {whole}");
 }
 
 #[test]
@@ -235,6 +256,10 @@ fn sizes_out_of_range_are_refused() {
     ];
     for options in bad {
         assert!(matches!(sheet(&s, &options, &Task::new()), Err(RenderError::Size { .. })));
+    }
+    for stroke in [0.0, 100.0, f32::NAN] {
+        let options = SheetOptions { stroke, ..SheetOptions::default() };
+        assert!(matches!(sheet(&s, &options, &Task::new()), Err(RenderError::Stroke { .. })));
     }
     let many = scene(vec![ball(3.0)], &[View::Front; 7]);
     let options = SheetOptions { width: 8192, height: 8192, ..SheetOptions::default() };

@@ -2,6 +2,7 @@
 //!
 //! A script ends by returning a scene. Renderers and exporters see only this: no script, no defaults left to fill in.
 
+mod carry;
 mod locks;
 mod look;
 mod motion;
@@ -15,7 +16,7 @@ use crate::geometry::{Bounds, Mesh, Strands};
 
 pub use locks::{LockKind, Locks};
 pub use look::{Background, HairMaterial, Look, MeshMaterial, Shading, TuftMaterial, View};
-pub use motion::{Motion, Timeline};
+pub use motion::{Motion, Shown, Timeline};
 pub use overlay::{Arrow, Line, Marker, Overlay, WireBox, WireSphere};
 
 /// A finished hairstyle.
@@ -31,6 +32,8 @@ pub struct Scene {
     pub look: Look,
     /// From head space (cm) to the space of the head's own file (cm); identity for the built-in mannequin.
     pub placement: Affine3A,
+    /// Which frames the pictures show, when anything moves.
+    pub shown: Shown,
 }
 
 /// One thing in a scene.

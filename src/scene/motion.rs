@@ -63,7 +63,30 @@ pub struct Timeline {
     pub looped: bool,
 }
 
+/// Which frames of a scene that moves are shown, counted from 0.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Shown {
+    /// The frame of still pictures.
+    pub still: usize,
+    /// The frames of a strip; eight of them, evenly, when there are none.
+    pub strip: Vec<usize>,
+}
+
+impl Timeline {
+    /// The frames that a strip shows unless others are chosen, from 0: eight, evenly, up to the last.
+    pub fn strip(&self) -> Vec<usize> {
+        let count = self.frames.min(8);
+        (1..=count).map(|i| (i * self.frames).div_ceil(count) - 1).collect()
+    }
+}
+
 impl Scene {
+    /// The still scene at the frame that still pictures show.
+    #[must_use]
+    pub fn still(&self) -> Self {
+        self.at(self.shown.still)
+    }
+
     /// The frames, when any part moves.
     pub fn timeline(&self) -> Option<Timeline> {
         let motions = || self.parts.iter().filter_map(|p| p.motion.as_ref());
@@ -86,11 +109,11 @@ impl Part {
         let Some(motion) = &self.motion else { return self.clone() };
         let body = match (&self.body, motion) {
             (Body::Mesh(mesh, material), Motion::Rigid(clip)) => match clip.at(frame) {
-                Some(transform) => Body::Mesh(Arc::new(mesh.transformed(transform)), material.clone()),
+                Some(transform) => Body::Mesh(Arc::new(mesh.transformed(transform)), *material),
                 None => self.body.clone(),
             },
             (Body::Mesh(mesh, material), Motion::Surface(clip)) => match clip.at(frame) {
-                Some(positions) => Body::Mesh(Arc::new(mesh.moved(positions)), material.clone()),
+                Some(positions) => Body::Mesh(Arc::new(mesh.moved(positions)), *material),
                 None => self.body.clone(),
             },
             (Body::Locks(locks), Motion::Rigid(clip)) => match clip.at(frame) {
@@ -140,7 +163,14 @@ mod tests {
         let body = Body::Mesh(Arc::new(mesh), MeshMaterial::default());
         let part = Part { name: "head".into(), source: String::new(), body, motion };
         let (views, look) = (vec![View::Front], Look::default());
-        Scene { name: "s".into(), parts: vec![part], views, look, placement: Affine3A::IDENTITY }
+        Scene {
+            name: "s".into(),
+            parts: vec![part],
+            views,
+            look,
+            placement: Affine3A::IDENTITY,
+            shown: Shown::default(),
+        }
     }
 
     fn corner(scene: &Scene) -> (Vec3, Vec3) {
@@ -152,6 +182,15 @@ mod tests {
     fn a_scene_without_motion_has_no_timeline_and_is_the_same_at_every_frame() {
         let still = scene(None);
         assert_eq!((still.timeline(), corner(&still.at(3))), (None, (Vec3::X, Vec3::Z)));
+    }
+
+    #[test]
+    fn a_strip_has_eight_frames_or_all() {
+        let strip = |frames| Timeline { frames, rate: 24.0, looped: false }.strip();
+        assert_eq!(strip(40), [4, 9, 14, 19, 24, 29, 34, 39]);
+        assert_eq!(strip(3), [0, 1, 2]);
+        let odd = strip(61);
+        assert_eq!((odd.len(), odd[7]), (8, 60));
     }
 
     #[test]

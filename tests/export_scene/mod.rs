@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use coif::geometry::{Mesh, Root, Strands};
 use coif::math::{rng::Key, trig};
-use coif::scene::{Body, Hair, HairMaterial, Look, MeshMaterial, Overlay, Part, Scene, View};
+use coif::scene::{Body, Hair, HairMaterial, Look, MeshMaterial, Overlay, Part, Scene, Shown, View};
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
 /// Radius of the ball.
@@ -93,12 +93,14 @@ pub fn scene(count: u64) -> Scene {
                 name: "head".into(),
                 source: "style.lua:3".into(),
                 body: Body::Mesh(Arc::new(ball()), MeshMaterial::default()),
+                motion: None,
             },
-            Part { name: "hair".into(), source: "style.lua:12".into(), body: Body::Hair(hair) },
+            Part { name: "hair".into(), source: "style.lua:12".into(), body: Body::Hair(hair), motion: None },
         ],
         views: vec![View::Front],
         look: Look::default(),
         placement: Affine3A::from_rotation_translation(turn, Vec3::new(0.0, 160.0, 2.0)),
+        shown: Shown::default(),
     }
 }
 

@@ -130,7 +130,7 @@ pub fn functions() -> Vec<Entry> {
 
 /// Heads and partings.
 pub fn nouns() -> Vec<Noun> {
-    let methods = vec![
+    let mut methods = vec![
         Entry::positional::<AtFields>("Head:at", "vector", at),
         Entry::positional::<BoxFields>("Head:box", "Box", box_named),
         Entry::table::<PointFields>("Head:point", "vector", point),
@@ -143,6 +143,7 @@ pub fn nouns() -> Vec<Noun> {
         Entry::positional::<MaskFields>("Head:mask", "Region", mask),
         Entry::table::<PartingFields>("Head:parting", "Parting", parting),
     ];
+    methods.extend(super::clip::head_methods());
     let getters = vec![
         Getter {
             name: "scale",

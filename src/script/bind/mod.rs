@@ -3,6 +3,7 @@
 //! Each file has the same shape: parameter structs, then `functions()` or `noun()`, then what they do. A binding reads
 //! its arguments strictly, calls the core, and gives the core's errors a place. This file is the table of contents.
 
+mod clip;
 mod constants;
 mod domain;
 mod golden;
@@ -46,6 +47,7 @@ pub fn registry() -> Registry {
     let nouns = [
         head::nouns(),
         vec![region::noun(), guides::noun(), strands::noun()],
+        clip::nouns(),
         domain::nouns(),
         tuft::nouns(),
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],

@@ -6,15 +6,16 @@ use glam::Affine3A;
 
 use super::super::call::{Call, Result};
 use super::super::registry::{Entry, Noun};
+use super::clip::{MovingLocks, MovingStrands, StillLocks};
 use super::overlay;
 use super::piece::Piece as Shape;
 use super::strands::Lock;
 use super::tuft::Wig;
-use crate::geometry::Mesh;
-use crate::head::Head;
+use crate::geometry::{Clip, Mesh};
+use crate::head::{Head, HeadMotion};
 use crate::math::Colour;
 use crate::params::{Handle, Object, Value};
-use crate::scene::{Background, Body, Hair, Locks, Look, MeshMaterial, Part, Scene, Shading, View};
+use crate::scene::{Background, Body, Hair, Locks, Look, MeshMaterial, Motion, Part, Scene, Shading, Shown, View};
 use crate::task::Warning;
 
 impl Object for Scene {
@@ -34,6 +35,13 @@ crate::params! {
         shading: Shading = Shading::Soft;
         /// Colour of the head.
         skin: Colour = MeshMaterial::default().colour;
+        /// How the head moves: `head:motion { ... }`. What is on it moves with it, but for hair whose own motion was made
+        /// with this one; when there is such hair, this may be left out.
+        motion: Option<Arc<HeadMotion>>;
+        /// Of a scene that moves, the frame of still pictures, from 1; the middle one when left out.
+        still: Option<usize>, range(1.0, 1e9);
+        /// Of a scene that moves, the frames of the strip, from 1; eight of them, evenly, when left out.
+        strip: Vec<usize> = vec![];
     }
 }
 
@@ -60,6 +68,9 @@ enum Piece {
     Hair(Arc<Lock>),
     Tufts(Wig),
     Shape(Arc<Shape>),
+    MovingHair(Arc<MovingStrands>),
+    /// All moving tufts of one head, or one moving piece.
+    MovingLocks(MovingLocks),
 }
 
 impl Piece {
@@ -70,6 +81,17 @@ impl Piece {
             Self::Hair(lock) => &lock.area.head,
             Self::Tufts(wig) => &wig.head,
             Self::Shape(shape) => &shape.head,
+            Self::MovingHair(hair) => &hair.rest.area.head,
+            Self::MovingLocks(locks) => locks.rest.head(),
+        }
+    }
+
+    /// The motion of the head that is in its frames.
+    fn motion(&self) -> Option<&Arc<HeadMotion>> {
+        match self {
+            Self::Head(_) | Self::Hair(_) | Self::Tufts(_) | Self::Shape(_) => None,
+            Self::MovingHair(hair) => hair.motion.as_ref(),
+            Self::MovingLocks(locks) => locks.motion.as_ref(),
         }
     }
 
@@ -80,6 +102,40 @@ impl Piece {
             Self::Hair(lock) => ("hair", &lock.source),
             Self::Tufts(wig) => ("tufts", wig.tufts.sources.first().map_or("", |s| s)),
             Self::Shape(shape) => (shape.kind.text(), &shape.source),
+            Self::MovingHair(hair) => ("hair", &hair.rest.source),
+            Self::MovingLocks(locks) => match &locks.rest {
+                StillLocks::Tufts(_) => ("tufts", &locks.source),
+                StillLocks::Piece(shape) => (shape.kind.text(), &locks.source),
+            },
+        }
+    }
+
+    /// As a part of the scene: its name, where it was made, what it is and what it does itself.
+    fn part(&self, skin: Colour) -> (&'static str, String, Body, Option<Motion>) {
+        match self {
+            Self::Head(head) => {
+                let look = MeshMaterial { colour: skin, ..MeshMaterial::default() };
+                ("head", String::new(), Body::Mesh(Arc::clone(&head.mesh), look), None)
+            }
+            Self::Hair(lock) => ("hair", lock.source.to_string(), Body::Hair(hair(lock)), None),
+            Self::Tufts(wig) => {
+                // With more than one source, each tuft says its own.
+                let source = if let [one] = wig.tufts.sources.as_slice() { one.to_string() } else { String::new() };
+                let locks = Locks::tufts(Arc::clone(&wig.tufts), wig.palette.clone());
+                ("tufts", source, Body::Locks(locks), None)
+            }
+            Self::Shape(shape) => {
+                let locks = Locks::piece(shape.kind, Mesh::clone(&shape.mesh), shape.material.clone());
+                (shape.kind.text(), shape.source.to_string(), Body::Locks(locks), None)
+            }
+            Self::MovingHair(moving) => {
+                let motion = Motion::Strands { strands: moving.strands.clone(), guides: moving.guides.clone() };
+                ("hair", moving.rest.source.to_string(), Body::Hair(hair(&moving.rest)), Some(motion))
+            }
+            Self::MovingLocks(moving) => {
+                let body = Body::Locks(moving.rest.locks());
+                (self.made().0, moving.source.to_string(), body, Some(Motion::Surface(moving.surface.clone())))
+            }
         }
     }
 }
@@ -110,33 +166,25 @@ fn scene(call: &Call) -> Result<Value> {
     }
     let placement =
         heads.first().copied().or(pieces.first().map(Piece::head)).map_or(Affine3A::IDENTITY, |h| h.placement);
+    let motion = head_motion(call, &fields, &pieces)?;
     let mut scene = Scene {
         name: call.session.options.name(),
         parts: vec![],
-        views: fields.views,
+        views: fields.views.clone(),
         look: Look { background: fields.background, shading: fields.shading, debug: false },
         placement,
+        shown: Shown::default(),
     };
     for piece in &pieces {
-        let (base, source, body) = match piece {
-            Piece::Head(head) => {
-                let look = MeshMaterial { colour: fields.skin, ..MeshMaterial::default() };
-                ("head", String::new(), Body::Mesh(Arc::clone(&head.mesh), look))
-            }
-            Piece::Hair(lock) => ("hair", lock.source.to_string(), Body::Hair(hair(lock))),
-            Piece::Tufts(wig) => {
-                // With more than one source, each tuft says its own.
-                let source = if let [one] = wig.tufts.sources.as_slice() { one.to_string() } else { String::new() };
-                ("tufts", source, Body::Locks(Locks::tufts(Arc::clone(&wig.tufts), wig.palette.clone())))
-            }
-            Piece::Shape(shape) => {
-                let locks = Locks::piece(shape.kind, Mesh::clone(&shape.mesh), shape.material.clone());
-                (shape.kind.text(), shape.source.to_string(), Body::Locks(locks))
-            }
-        };
-        let name = unique(base, &scene.parts);
-        scene.parts.push(Part { name, source, body, motion: None });
+        let (base, source, body, own) = piece.part(fields.skin);
+        let mut part = Part { name: unique(base, &scene.parts), source, body, motion: own };
+        if let (Some(motion), None) = (&motion, piece.motion()) {
+            call.task().check().map_err(|e| call.problem(e.to_string(), None))?;
+            part.carry(&motion.clip);
+        }
+        scene.parts.push(part);
     }
+    scene.shown = shown(call, &fields, &scene)?;
     let bounds = scene.bounds();
     for part in &mut scene.parts {
         if let Body::Hair(hair) = &mut part.body {
@@ -144,6 +192,70 @@ fn scene(call: &Call) -> Result<Value> {
         }
     }
     Ok(Value::Handle(Handle::new(Arc::new(scene))))
+}
+
+/// What the head does: what the scene says, else what a part's own motion was made with; never two things at once, and
+/// all that moves at one rate.
+fn head_motion(call: &Call, fields: &SceneFields, pieces: &[Piece]) -> Result<Option<Arc<HeadMotion>>> {
+    let mut motion = fields.motion.clone();
+    for piece in pieces {
+        let Some(own) = piece.motion() else { continue };
+        match &motion {
+            Some(known) if **known != **own => {
+                let (what, source) = piece.made();
+                let message = format!("the {what} made at {source} moves with another motion of the head");
+                let hint = "make the motion once and use it for everything: `local turn = head:motion { ... }`";
+                return Err(call.problem_at(
+                    if fields.motion.is_some() { "motion" } else { "" },
+                    message,
+                    Some(hint.into()),
+                ));
+            }
+            _ => motion = Some(Arc::clone(own)),
+        }
+    }
+    let mut rate = motion.as_ref().map(|m| ("the head's motion".to_owned(), m.clip.rate));
+    for piece in pieces {
+        let own = match piece {
+            Piece::MovingHair(hair) => hair.strands.rate,
+            Piece::MovingLocks(locks) => locks.surface.rate,
+            Piece::Head(_) | Piece::Hair(_) | Piece::Tufts(_) | Piece::Shape(_) => continue,
+        };
+        let (what, source) = piece.made();
+        match &rate {
+            Some((other, known)) if *known != own => {
+                let message = format!("the {what} made at {source} has {own} frames in a second, {other} has {known}");
+                let hint = "give everything that moves the same `rate`".to_owned();
+                return Err(call.problem(message, Some(hint)));
+            }
+            _ => rate = Some((format!("the {what} made at {source}"), own)),
+        }
+    }
+    Ok(motion)
+}
+
+/// Which frames the pictures show.
+fn shown(call: &Call, fields: &SceneFields, scene: &Scene) -> Result<Shown> {
+    let Some(timeline) = scene.timeline() else {
+        let given = [("still", fields.still.is_some()), ("strip", !fields.strip.is_empty())];
+        return match given.iter().find(|(_, is_given)| *is_given) {
+            Some((name, _)) => {
+                let hint = Some("leave it out, or put something in that moves".to_owned());
+                Err(call.problem_at(name, "nothing in the scene moves", hint))
+            }
+            None => Ok(Shown::default()),
+        };
+    };
+    let last = timeline.frames;
+    let within = |path: &str, frame: usize| {
+        if (1..=last).contains(&frame) {
+            return Ok(frame - 1);
+        }
+        Err(call.problem_at(path, format!("there is no frame `{frame}`"), Some(format!("the frames are 1 to {last}"))))
+    };
+    let still = within("still", fields.still.unwrap_or(last.div_ceil(2)))?;
+    let strip = fields.strip.iter().enumerate().map(|(i, &f)| within(&format!("strip[{}]", i + 1), f));
+    Ok(Shown { still, strip: strip.collect::<Result<_>>()? })
 }
 
 fn hair(lock: &Lock) -> Hair {
@@ -183,8 +295,17 @@ fn take(call: &Call, value: &Value, path: &str, out: &mut Vec<Piece>) -> Result<
                 out.push(Piece::Shape(shape));
                 return Ok(());
             }
+            if let Some(hair) = h.get::<MovingStrands>() {
+                out.push(Piece::MovingHair(hair));
+                return Ok(());
+            }
+            if let Some(locks) = h.get::<MovingLocks>() {
+                take_moving(call, &locks, path, out)?;
+                return Ok(());
+            }
             match h.name() {
                 "Guides" => Some("grow them first: `guides:grow { ... }`"),
+                "Motion" => Some("name it: `motion = turn`"),
                 "Region" => Some("a region shows nothing; grow hair on it: `region:guides { ... }:grow { ... }`"),
                 _ => None,
             }
@@ -200,6 +321,50 @@ fn take(call: &Call, value: &Value, path: &str, out: &mut Vec<Piece>) -> Result<
     };
     let message = format!("expected a Head, Strands, Tufts or a Piece, got {} `{value}`", value.type_name());
     Err(call.problem_at(path, message, hint.map(ToOwned::to_owned)))
+}
+
+/// Takes stylised hair in motion; all moving tufts of a head become one part, as still ones do.
+fn take_moving(call: &Call, locks: &MovingLocks, path: &str, out: &mut Vec<Piece>) -> Result<()> {
+    let vertices = locks.rest.locks().mesh.mesh.positions.len();
+    if let Some(frame) = locks.surface.frames.iter().find(|f| f.len() != vertices) {
+        let message = format!("a frame of `{}` points moves a surface of {vertices}", frame.len());
+        return Err(call.problem_at(path, message, None));
+    }
+    let is_same = |a: &MovingLocks| match (&a.rest, &locks.rest) {
+        (StillLocks::Tufts(a), StillLocks::Tufts(b)) => Arc::ptr_eq(&a.head, &b.head),
+        _ => false,
+    };
+    let fits = |a: &MovingLocks| {
+        let (x, y) = (&a.surface, &locks.surface);
+        let motions = match (&a.motion, &locks.motion) {
+            (None, None) => true,
+            (Some(a), Some(b)) => a == b,
+            _ => false,
+        };
+        motions && x.rate == y.rate && x.looped == y.looped && (!x.looped || x.count() == y.count())
+    };
+    let same = out.iter_mut().find_map(|p| match p {
+        Piece::MovingLocks(all) if is_same(all) && fits(all) => Some(all),
+        _ => None,
+    });
+    match (same, &locks.rest) {
+        (Some(all), StillLocks::Tufts(wig)) => {
+            if let StillLocks::Tufts(rest) = &mut all.rest {
+                *rest = rest.followed(wig);
+            }
+            let count = all.surface.count().max(locks.surface.count());
+            let frames = (0..count).map(|i| {
+                let of = |clip: &Clip<Vec<glam::Vec3>>| clip.at(i).map_or_else(Vec::new, |f| f.to_vec());
+                Arc::new([of(&all.surface), of(&locks.surface)].concat())
+            });
+            all.surface.frames = frames.collect();
+            if all.source != locks.source {
+                all.source = "".into();
+            }
+        }
+        _ => out.push(Piece::MovingLocks(locks.clone())),
+    }
+    Ok(())
 }
 
 /// `hair`, `hair_2`, `hair_3`.

@@ -203,6 +203,20 @@ pub fn head_of(call: &Call, given: Option<Arc<Head>>) -> Result<Arc<Head>> {
 impl Wig {
     /// This and the other's tufts, those that are in both once. Both are of one head.
     pub fn joined(&self, other: &Self) -> Self {
+        let known = |t: &Tuft| {
+            let same =
+                |k: &Tuft| k.stroke == t.stroke && k.section == t.section && k.up == t.up && k.colour == t.colour;
+            self.tufts.tufts.iter().any(same)
+        };
+        self.with_more(other, |t| !known(t))
+    }
+
+    /// This one's tufts, then all of the other's. Both are of one head.
+    pub fn followed(&self, other: &Self) -> Self {
+        self.with_more(other, |_| true)
+    }
+
+    fn with_more(&self, other: &Self, is_wanted: impl Fn(&Tuft) -> bool) -> Self {
         let mut palette = self.palette.clone();
         let places: Vec<u32> = other
             .palette
@@ -215,17 +229,12 @@ impl Wig {
                 at as u32
             })
             .collect();
-        let known = |t: &Tuft| {
-            let same =
-                |k: &Tuft| k.stroke == t.stroke && k.section == t.section && k.up == t.up && k.colour == t.colour;
-            self.tufts.tufts.iter().any(same)
-        };
         let fresh: Vec<Tuft> = other
             .tufts
             .tufts
             .iter()
             .map(|t| Tuft { colour: places.get(t.colour as usize).copied().unwrap_or(0), ..t.clone() })
-            .filter(|t| !known(t))
+            .filter(is_wanted)
             .collect();
         let mut tufts = Tufts::clone(&self.tufts);
         tufts.extend(&Tufts { tufts: fresh, sources: other.tufts.sources.clone() });
