@@ -48,31 +48,45 @@ struct Side {
     at: Vec2,
 }
 
-/// Lines that cross the borders between a band's samples and their neighbours to the right and below.
-pub(super) fn edges(toon: &Toon, screen: &Screen, nearest: &Nearest, scale: f32, pen: f32) -> Vec<Drop> {
+/// Samples that are looked at together for any border among them.
+const STRIDE: usize = 32;
+
+/// Lines that cross the borders between a band's samples and their neighbours to the right and below. `locks` has the
+/// lock of every sample.
+pub(super) fn edges(toon: &Toon, screen: &Screen, nearest: &Nearest, locks: &[u32], scale: f32, pen: f32) -> Vec<Drop> {
     let mut drops = Vec::new();
     let width = screen.width;
     let tracer = Tracer { toon, screen, pen, steepest: (1.0 / (STEEP * STEEP) - 1.0).sqrt() / scale };
-    let side = |x: usize, y: usize| {
-        let i = y * width + x;
-        let owner = nearest.owner[i];
-        let lock = if owner == NONE { NONE } else { toon.lock_of[owner as usize] };
-        Side { owner, lock, z: nearest.depth[i], at: Vec2::new(x as f32 + 0.5, (nearest.top + y) as f32 + 0.5) }
+    let side = |i: usize| {
+        let at = Vec2::new((i % width) as f32 + 0.5, (nearest.top + i / width) as f32 + 0.5);
+        Side { owner: nearest.owner[i], lock: locks[i], z: nearest.depth[i], at }
     };
-    for y in 0..nearest.rows {
-        let here = &nearest.owner[y * width..(y + 1) * width];
-        for x in 1..width {
-            if here[x] != here[x - 1] {
-                drops.extend(tracer.line(side(x - 1, y), side(x, y)));
+    // From each sample of a range to the one `step` farther.
+    let mut trace = |range: std::ops::Range<usize>, step: usize| {
+        let mut from = range.start;
+        while from < range.end {
+            let count = STRIDE.min(range.end - from);
+            let (a, b) = (&locks[from..from + count], &locks[from + step..from + step + count]);
+            let (p, q) = (&nearest.depth[from..from + count], &nearest.depth[from + step..from + step + count]);
+            let mut any = false;
+            for k in 0..count {
+                any |= (a[k] != b[k]) | ((p[k] - q[k]).abs() > STEP);
             }
-        }
-        if y + 1 < nearest.all {
-            let below = &nearest.owner[(y + 1) * width..(y + 2) * width];
-            for x in 0..width {
-                if here[x] != below[x] {
-                    drops.extend(tracer.line(side(x, y), side(x, y + 1)));
+            if any {
+                for k in 0..count {
+                    if a[k] != b[k] || (p[k] - q[k]).abs() > STEP {
+                        drops.extend(tracer.line(side(from + k), side(from + k + step)));
+                    }
                 }
             }
+            from += count;
+        }
+    };
+    for y in 0..nearest.rows {
+        let row = y * width..(y + 1) * width;
+        trace(row.start..row.end - 1, 1);
+        if y + 1 < nearest.all {
+            trace(row, width);
         }
     }
     drops
@@ -89,9 +103,6 @@ struct Tracer<'a> {
 impl Tracer<'_> {
     /// The line between two neighbouring samples.
     fn line(&self, a: Side, b: Side) -> Option<Drop> {
-        if a.lock == b.lock && (a.z - b.z).abs() <= STEP {
-            return None;
-        }
         let (front, back) = if b.owner == NONE || a.owner != NONE && a.z >= b.z { (a, b) } else { (b, a) };
         let lock = &self.toon.locks[front.lock as usize];
         let step = b.at - a.at;

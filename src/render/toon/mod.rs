@@ -207,13 +207,16 @@ impl Toon {
         let screen = raster::Screen::new(self, camera.width, camera.height, rows, |p| camera.project(p));
         task.check()?;
         let pen = ink::pen(camera.width, per_pixel);
+        let words = shade::words(self);
         let drawn: Result<Vec<(Shaded, Vec<ink::Drop>)>, Cancelled> = (0..screen.bands())
             .into_par_iter()
             .map(|band| {
                 task.check()?;
                 let nearest = screen.nearest(band, 1);
-                let shaded = shade::band(self, &screen, &nearest, &light, depths);
-                Ok((shaded, ink::edges(self, &screen, &nearest, camera.scale, pen)))
+                let mut shaded = shade::band(self, &screen, &nearest, &light, &words, depths);
+                let drops = ink::edges(self, &screen, &nearest, &shaded.locks, camera.scale, pen);
+                shaded.locks = vec![];
+                Ok((shaded, drops))
             })
             .collect();
         let (bands, mut drops): (Vec<Shaded>, Vec<Vec<ink::Drop>>) = drawn?.into_iter().unzip();

@@ -91,13 +91,11 @@ impl<'a> Screen<'a> {
             self.cover(c, top, all, |from, z, step| {
                 let count = from.len();
                 let (near, of) = (&mut depth[from.clone()], &mut owner[from]);
-                let mut z = z;
                 for k in 0..count {
-                    if z > near[k] {
-                        near[k] = z;
-                        of[k] = t;
-                    }
-                    z += step;
+                    let z = z + step * k as f32;
+                    let nearer = z > near[k];
+                    near[k] = if nearer { z } else { near[k] };
+                    of[k] = if nearer { t } else { of[k] };
                 }
             });
         }
@@ -125,6 +123,7 @@ impl<'a> Screen<'a> {
             return;
         }
         let per_row = |p: Vec3, q: Vec3| (q.x - p.x) / (q.y - p.y);
+
         let (long, upper, lower) = (per_row(a, d), per_row(a, b), per_row(b, d));
         let (least, most) = (a.z.min(b.z).min(d.z), a.z.max(b.z).max(d.z));
         for y in first..end {

@@ -34,6 +34,10 @@ struct Lit {
     facing: f32,
     /// How much the surface faces up in the picture.
     tilt: f32,
+    /// Place along the lock.
+    along: f32,
+    /// From the middle of the lock's side that is seen (0) to its edges (1).
+    across: f32,
 }
 
 /// The lamp of one view.
@@ -63,6 +67,7 @@ impl Light {
             .map(|(v, &skin)| {
                 let out = (v.position - toon.centre).normalize_or(v.normal);
                 let tilt = v.normal.dot(camera.up);
+                let (along, across) = (v.along, v.across);
                 if skin {
                     // Features are drawn by lines; the lamp sees the head's large form.
                     let n = (v.normal * 0.55 + out * 0.45).normalize_or(v.normal);
@@ -70,12 +75,13 @@ impl Light {
                     // What faces away far enough is dark in any case.
                     let near = cosine > -0.3;
                     let free = if near { shadow.free(v.position + v.normal * 0.25 + lamp * 0.15) - 0.5 } else { 0.5 };
-                    Lit { lamp: cosine, free, off: 0.0, facing: -1.0, tilt }
+                    Lit { lamp: cosine, free, off: 0.0, facing: -1.0, tilt, along, across }
                 } else {
                     // Locks that lie on the head share its light; what each of them adds keeps them apart.
                     let n = (v.normal * 0.68 + out * 0.32).normalize_or(v.normal);
                     let facing = n.dot(half) - 0.80;
-                    Lit { lamp: n.dot(lamp) - 0.02, free: 1.0, off: v.grain.dot(half) - 0.10, facing, tilt }
+                    let off = v.grain.dot(half) - 0.10;
+                    Lit { lamp: n.dot(lamp) - 0.02, free: 1.0, off, facing, tilt, along, across }
                 }
             })
             .collect();
@@ -92,6 +98,8 @@ pub(super) struct Shaded {
     pub(super) depths: Vec<f32>,
     /// How much skin faces up, in 32,000ths; [`NO_TILT`] where there is none. Empty for a band without skin.
     pub(super) tilts: Vec<i16>,
+    /// Per sample its lock, with the row that follows; [`NONE`] where there is nothing.
+    pub(super) locks: Vec<u32>,
 }
 
 /// Nothing there.
@@ -162,16 +170,50 @@ impl Weights {
     }
 }
 
+/// How a triangle is shaded.
+#[derive(Clone, Copy)]
+struct Setup {
+    owner: u32,
+    lock: u32,
+    /// The colour of all its samples; [`EMPTY`] when they differ.
+    flat: u32,
+    skin: bool,
+    /// Tilt at the origin of the picture, and its growth.
+    tilt: Linear,
+}
+
+/// Triangles whose setup is kept: neighbouring rows show the same ones.
+const KEPT: usize = 1024;
+
+/// Colours of a lock where nothing changes: in the light, in the shade, in the depth.
+type Words = [u32; 3];
+
+/// The colours of all locks.
+pub(super) fn words(toon: &Toon) -> Vec<Words> {
+    let word = |tones: &Tones, lit, raised| pack(tones.at(0.0, lit, raised, 0.0));
+    toon.locks.iter().map(|l| [word(&l.tones, 1.0, 1.0), word(&l.tones, 0.0, 1.0), word(&l.tones, 0.0, 0.0)]).collect()
+}
+
 /// The tones of a band.
-pub(super) fn band(toon: &Toon, screen: &Screen, nearest: &Nearest, light: &Light, depths: bool) -> Shaded {
+pub(super) fn band(
+    toon: &Toon,
+    screen: &Screen,
+    nearest: &Nearest,
+    light: &Light,
+    words: &[Words],
+    depths: bool,
+) -> Shaded {
     let (width, rows) = (screen.width, nearest.rows);
     let mut shaded = Shaded {
         rows,
         samples: vec![EMPTY; width * rows],
         depths: if depths { nearest.depth[..width * rows].to_vec() } else { vec![] },
         tilts: vec![],
+        locks: vec![NONE; width * nearest.all],
     };
-    for y in 0..rows {
+    let none = Linear { at: 0.0, right: 0.0, down: 0.0 };
+    let mut kept = vec![Setup { owner: NONE, lock: 0, flat: EMPTY, skin: false, tilt: none }; KEPT];
+    for y in 0..nearest.all {
         let owners = &nearest.owner[y * width..(y + 1) * width];
         let mut x = 0;
         while x < width {
@@ -181,22 +223,88 @@ pub(super) fn band(toon: &Toon, screen: &Screen, nearest: &Nearest, light: &Ligh
                 end += 1;
             }
             if owner != NONE {
-                let run = Run { toon, screen, light, owner, x, y: nearest.top + y };
-                let out = &mut shaded.samples[y * width + x..y * width + end];
-                let lock = toon.lock(owner);
-                if lock.skin {
-                    if shaded.tilts.is_empty() {
-                        shaded.tilts = vec![NO_TILT; width * rows];
+                let slot = &mut kept[owner as usize % KEPT];
+                if slot.owner != owner {
+                    *slot = setup(toon, screen, light, words, owner);
+                }
+                let range = y * width + x..y * width + end;
+                shaded.locks[range.clone()].fill(slot.lock);
+                if y < rows {
+                    let run = Run { toon, screen, light, owner, x, y: nearest.top + y };
+                    let lock = &toon.locks[slot.lock as usize];
+                    let out = &mut shaded.samples[range.clone()];
+                    match (slot.flat, slot.skin) {
+                        (EMPTY, true) => run.skin(lock, out),
+                        (EMPTY, false) => run.hair(lock, out),
+                        (flat, _) => out.fill(flat),
                     }
-                    run.skin(lock, out, &mut shaded.tilts[y * width + x..y * width + end]);
-                } else {
-                    run.hair(lock, out);
+                    if slot.skin {
+                        if shaded.tilts.is_empty() {
+                            shaded.tilts = vec![NO_TILT; width * rows];
+                        }
+                        let tilt = &slot.tilt;
+                        let first = tilt.at + tilt.down * (nearest.top + y) as f32;
+                        for (k, turned) in (x..end).zip(&mut shaded.tilts[range]) {
+                            *turned = ((first + tilt.right * k as f32) / TILT).clamp(-32000.0, 32000.0) as i16;
+                        }
+                    }
                 }
             }
             x = end;
         }
     }
     shaded
+}
+
+/// A triangle whose corners all lie on one side of every border, by a margin, has one colour.
+fn setup(toon: &Toon, screen: &Screen, light: &Light, words: &[Words], owner: u32) -> Setup {
+    const MARGIN: f32 = 0.02;
+    let t = toon.triangles[owner as usize];
+    let index = toon.lock_of[owner as usize];
+    let lock = &toon.locks[index as usize];
+    let tones = &lock.tones;
+    let lit = |i: usize| &light.lit[t[i] as usize];
+    let (a, b, c) = (lit(0), lit(1), lit(2));
+    let low = |x: f32, y: f32, z: f32| x.min(y).min(z);
+    let high = |x: f32, y: f32, z: f32| x.max(y).max(z);
+    let (dark, bright) = (high(a.lamp, b.lamp, c.lamp), low(a.lamp, b.lamp, c.lamp));
+    let words = &words[index as usize];
+    let mut tilt = Linear { at: 0.0, right: 0.0, down: 0.0 };
+    let flat = if lock.skin {
+        let corners = raster::corners(&screen.points, &t);
+        let w = Weights::new(corners);
+        tilt = w.linear(Vec2::splat(0.5), [a.tilt, b.tilt, c.tilt]);
+        let free = low(a.free, b.free, c.free) > 2.0 * MARGIN;
+        let p = |i: usize| toon.vertices[t[i] as usize].position;
+        let coarse = high(p(0).distance_squared(p(1)), p(1).distance_squared(p(2)), p(2).distance_squared(p(0)))
+            > COARSE * COARSE;
+        let back = raster::area(corners[0], corners[1], corners[2]) > 0.0;
+        if back || dark < -MARGIN || high(a.free, b.free, c.free) < -2.0 * MARGIN && !coarse {
+            words[1]
+        } else if bright > MARGIN && free && !coarse {
+            words[0]
+        } else {
+            EMPTY
+        }
+    } else if tones.lit[0] != tones.lit[1] {
+        EMPTY
+    } else if dark < -MARGIN {
+        match tones.deep {
+            true if dark < -DEEP - MARGIN => words[2],
+            true if bright < -DEEP + MARGIN => EMPTY,
+            _ => words[1],
+        }
+    } else if bright > MARGIN {
+        let reach = 0.55 * tones.band + MARGIN;
+        let dull = tones.band == 0.0
+            || high(a.facing, b.facing, c.facing) < -0.25 * tones.band - MARGIN
+            || low(a.off, b.off, c.off) > reach
+            || high(a.off, b.off, c.off) < -reach;
+        if dull { words[0] } else { EMPTY }
+    } else {
+        EMPTY
+    };
+    Setup { owner, lock: index, flat, skin: lock.skin, tilt }
 }
 
 /// Neighbouring samples of one triangle.
@@ -210,11 +318,10 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn weights(&self) -> ([u32; 3], Vec2, Weights, bool) {
+    fn weights(&self) -> ([u32; 3], Vec2, Weights) {
         let t = self.toon.triangles[self.owner as usize];
-        let c = raster::corners(&self.screen.points, &t);
         let at = Vec2::new(self.x as f32 + 0.5, self.y as f32 + 0.5);
-        (t, at, Weights::new(c), raster::area(c[0], c[1], c[2]) > 0.0)
+        (t, at, Weights::new(raster::corners(&self.screen.points, &t)))
     }
 
     fn numbers(&self, t: [u32; 3], of: impl Fn(&Lit) -> f32) -> [f32; 3] {
@@ -223,15 +330,14 @@ impl Run<'_> {
     }
 
     fn hair(&self, lock: &Lock, out: &mut [u32]) {
-        let (t, at, w, _) = self.weights();
+        let (t, at, w) = self.weights();
         let tones = &lock.tones;
         let lamp = w.linear(at, self.numbers(t, |l| l.lamp));
-        let vertex = |i: usize| &self.toon.vertices[t[i] as usize];
-        let along = w.linear(at, [vertex(0).along, vertex(1).along, vertex(2).along]);
+        let along = w.linear(at, self.numbers(t, |l| l.along));
         let band = (tones.band > 0.0).then(|| {
             let off = w.linear(at, self.numbers(t, |l| l.off));
             let facing = w.linear(at, self.numbers(t, |l| l.facing));
-            let across = w.linear(at, [vertex(0).across, vertex(1).across, vertex(2).across]);
+            let across = w.linear(at, self.numbers(t, |l| l.across));
             (off, facing, across)
         });
         let graded = tones.lit[0] != tones.lit[1];
@@ -252,42 +358,37 @@ impl Run<'_> {
                 }
                 _ => 0.0,
             };
-            let now = (lit, raised, bright);
-            if graded || now.0 != before.0 || now.1 != before.1 || now.2 != before.2 {
+            if graded || lit != before.0 || raised != before.1 || bright != before.2 {
                 word = pack(tones.at(along.at + along.right * k, lit, raised, bright));
-                before = now;
+                before = (lit, raised, bright);
             }
             *sample = word;
         }
     }
 
-    fn skin(&self, lock: &Lock, out: &mut [u32], tilts: &mut [i16]) {
-        let (t, at, w, back) = self.weights();
+    fn skin(&self, lock: &Lock, out: &mut [u32]) {
+        let (t, at, w) = self.weights();
         let tones = &lock.tones;
         let lamp = w.linear(at, self.numbers(t, |l| l.lamp));
         let free = w.linear(at, self.numbers(t, |l| l.free));
-        let tilt = self.numbers(t, |l| l.tilt);
-        let up = w.linear(at, tilt);
-        let (low, high) = (tilt[0].min(tilt[1]).min(tilt[2]), tilt[0].max(tilt[1]).max(tilt[2]));
         let vertex = |i: usize| &self.toon.vertices[t[i] as usize];
         let p = [vertex(0).position, vertex(1).position, vertex(2).position];
         let far = p[0].distance_squared(p[1]).max(p[1].distance_squared(p[2])).max(p[2].distance_squared(p[0]));
-        let coarse = (far > COARSE * COARSE).then(|| [0, 1, 2].map(|k| w.linear(at, p.map(|p| p[k]))));
+        let of = |k: usize| w.linear(at, [p[0][k], p[1][k], p[2][k]]);
+        let coarse = (far > COARSE * COARSE).then(|| (of(0), of(1), of(2)));
         let (mut before, mut word) = (f32::NAN, EMPTY);
-        for (i, (sample, turned)) in out.iter_mut().zip(tilts).enumerate() {
-            let k = i as f32;
-            *turned = ((up.at + up.right * k).clamp(low, high) / TILT) as i16;
+        for (k, sample) in out.iter_mut().enumerate() {
+            let k = k as f32;
             let mut lit = lamp.step(lamp.at + lamp.right * k, 0.0);
-            if back {
-                // The inner side of an open body.
-                lit = 0.0;
-            } else if let (Some([x, y, z]), true) = (&coarse, lit > 0.0) {
-                let place = Vec3::new(x.at + x.right * k, y.at + y.right * k, z.at + z.right * k);
-                let lamp = self.light.shadow.axes.z_axis;
-                let free = self.light.shadow.free(place + vertex(0).normal * 0.25 + lamp * 0.15);
-                lit = lit.min((0.5 + 4.0 * (free - 0.5)).clamp(0.0, 1.0));
-            } else {
-                lit = lit.min(free.step(free.at + free.right * k, 0.0));
+            match &coarse {
+                Some((x, y, z)) if lit > 0.0 => {
+                    let place = Vec3::new(x.at + x.right * k, y.at + y.right * k, z.at + z.right * k);
+                    let lamp = self.light.shadow.axes.z_axis;
+                    let free = self.light.shadow.free(place + vertex(0).normal * 0.25 + lamp * 0.15);
+                    lit = lit.min((0.5 + 4.0 * (free - 0.5)).clamp(0.0, 1.0));
+                }
+                Some(_) => {}
+                None => lit = lit.min(free.step(free.at + free.right * k, 0.0)),
             }
             if lit != before {
                 word = pack(tones.at(0.0, lit, 1.0, 0.0));
