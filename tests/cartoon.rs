@@ -310,7 +310,7 @@ fn three_tones_have_a_darker_one() {
         scene.views = vec![View::Back];
         let picture = picture(&scene, 200);
         // Between the ink and the colour in the shade.
-        let blue = |c: &&[u8]| c[2] > c[0] + 40 && (60..110).contains(&c[2]);
+        let blue = |c: &&[u8]| c[2] > c[0].saturating_add(40) && (60..110).contains(&c[2]);
         let lit = near(&picture, [0x3f, 0x7f, 0xc4], 2);
         (lit, picture.pixels.chunks_exact(3).filter(blue).count())
     };
