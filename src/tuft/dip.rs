@@ -99,7 +99,7 @@ fn probes(tuft: &Tuft, options: &DipOptions, ground: &Ground) -> Vec<Probe> {
             let allowed = (options.allowed * thickness).max(INVISIBLE * ground.scale);
             let centre = cut.frame.centre;
             let mut deepest = Probe { t, depth: 0.0, position: centre, normal: Vec3::Y, allowed, thickness };
-            let clear = ground.solid.clearance(centre).max(0.0);
+            let clear = ground.solid.clearance(centre);
             for k in 0..tips {
                 // Prongs are tried at the corners of their own slices, a whole section at its own.
                 for o in &unit {
@@ -110,7 +110,8 @@ fn probes(tuft: &Tuft, options: &DipOptions, ground: &Ground) -> Vec<Probe> {
                     // A depth that is allowed, or less than another one here, need not be known: the distance changes
                     // no faster than the place.
                     let matters = deepest.depth.max(allowed);
-                    if p.distance(centre) - clear <= matters || ground.solid.clearance(p) > 0.0 {
+                    let near = clear > 0.0 && p.distance(centre) - clear <= matters;
+                    if near || ground.solid.clearance(p) > 0.0 {
                         continue;
                     }
                     if ground.solid.closest_within(p, matters).is_some() {
