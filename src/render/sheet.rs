@@ -16,7 +16,7 @@ use super::shade::{Coat, Skin, Sky, Studio};
 use super::shadow::{Density, density};
 use super::strands::{Bundle, Ink};
 use super::surface::{self, Shell};
-use super::toon::Toon;
+use super::toon::{self, Toon};
 
 /// An opaque picture, sRGB.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -88,6 +88,9 @@ pub enum RenderError {
         most: u64,
     },
 }
+
+/// Height of the strip at the lower border that fades out, as a fraction of a view's.
+const FADE: f32 = 0.10;
 
 /// Most pixels of a sheet, in millions.
 pub(super) const MOST_PIXELS: u64 = 200;
@@ -277,6 +280,12 @@ struct Stage {
 impl Stage {
     fn new(scene: &Scene, stroke: f32, task: &Task) -> Result<Self, Cancelled> {
         let mut meshes = Vec::new();
+        // Flat tones need neither shadows in hair nor a sky.
+        if scene.look.shading == Shading::Toon && !scene.look.debug {
+            let density = density(&[], &[], task)?;
+            let sky = Sky::new(&density, task)?;
+            return Ok(Self { meshes, density, sky, toon: Some(Toon::new(scene)) });
+        }
         for part in &scene.parts {
             if let Body::Mesh(mesh, material) = &part.body {
                 task.check()?;
@@ -294,12 +303,6 @@ impl Stage {
                 let skin = Skin::new(&MeshMaterial { roughness, ..MeshMaterial::default() });
                 meshes.push((locks.mesh.mesh.clone(), skin, Some(tints)));
             }
-        }
-        // Flat tones need neither shadows in hair nor a sky.
-        if scene.look.shading == Shading::Toon && !scene.look.debug {
-            let density = density(&[], &[], task)?;
-            let sky = Sky::new(&density, task)?;
-            return Ok(Self { meshes: vec![], density, sky, toon: Some(Toon::new(scene)) });
         }
         let hair: Vec<(&Strands, f32, f32)> = scene
             .hair()
@@ -325,6 +328,11 @@ impl Stage {
         task: &Task,
     ) -> Result<(Vec<u8>, Vec<Label>), Cancelled> {
         let ss = options.supersample as usize;
+        if let (Some(toon), None) = (&self.toon, scene.hair().next()) {
+            task.progress("surfaces", 0.2);
+            let paper = toon::Paper { background: paper.to_linear(), fade: FADE };
+            return Ok((toon.picture(camera, ss, paper, task)?, vec![]));
+        }
         let fine = camera.enlarged(ss);
         let meshes: Vec<&Mesh> = self.meshes.iter().map(|(mesh, ..)| mesh).collect();
         task.progress("light", 0.0);
@@ -361,7 +369,7 @@ impl Stage {
             layer: &layer,
             solid: if drawing.is_some() { 0.45 } else { 1.0 },
             background: paper.to_linear(),
-            fade: 0.10,
+            fade: FADE,
         };
         task.progress("hair", 0.4);
         let pixels = raster::draw(&bundles, &canvas, task)?;
