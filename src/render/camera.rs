@@ -40,6 +40,16 @@ impl Camera {
         )
     }
 
+    /// [`project`](Self::project) as three rows of an affine matrix: x, y and depth are the products with (p, 1).
+    pub fn rows(&self) -> [[f32; 4]; 3] {
+        let row = |axis: Vec3, offset: f32| [axis.x, axis.y, axis.z, offset - axis.dot(self.centre)];
+        [
+            row(self.right * self.scale, self.width as f32 * 0.5),
+            row(-self.up * self.scale, self.height as f32 * 0.5),
+            row(self.toward, 0.0),
+        ]
+    }
+
     /// The point that projects to these pixels and this depth.
     pub fn unproject(&self, at: Vec3) -> Vec3 {
         let x = (at.x - self.width as f32 * 0.5) / self.scale;
@@ -189,6 +199,8 @@ mod tests {
         assert_eq!(camera.project(Vec3::new(1.0, 2.0, 3.0)), Vec3::new(100.0, 50.0, 0.0));
         assert_eq!(camera.project(Vec3::new(2.0, 3.0, 5.0)), Vec3::new(110.0, 40.0, 2.0));
         let p = Vec3::new(0.5, -3.0, 7.0);
+        let rows = camera.rows().map(|r| Vec3::from_slice(&r[..3]).dot(p) + r[3]);
+        assert!(Vec3::from(rows).distance(camera.project(p)) < 1e-4);
         assert!(camera.unproject(camera.project(p)).distance(p) < 1e-5);
         assert_eq!(camera.enlarged(2).project(Vec3::new(2.0, 3.0, 5.0)), Vec3::new(220.0, 80.0, 2.0));
     }
