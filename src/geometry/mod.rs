@@ -13,6 +13,7 @@ pub mod mesh;
 pub mod obox;
 pub mod polygon;
 pub mod sample;
+pub mod slice;
 pub mod solid;
 pub mod strands;
 

@@ -1,0 +1,362 @@
+//! Lattices: a parallelepiped of control points around what is to be moved.
+//!
+//! Local coordinates are equations (2) to (4) of Liu and Liu 2011, the motion is their (5) in terms of displacements: a
+//! point moves by the Bernstein mean of how far the control points have moved. Since the basis sums to 1 and reproduces
+//! the local coordinates, that is the same as (5) in exact arithmetic; in floating point it leaves a point whose control
+//! points have not moved exactly where it is.
+
+use std::collections::BTreeMap;
+
+use glam::{DMat3, DVec3, Mat3, Vec3};
+use rayon::prelude::*;
+
+use super::kernel::{self, Grid, Limit};
+use super::{DeformError, PointKind};
+use crate::geometry::Bounds;
+use crate::math::Digest;
+use crate::task::Task;
+
+/// The most divisions along one edge.
+pub const MOST_DIVISIONS: u32 = 32;
+/// Points that are moved between two looks at the task.
+const PIECE: usize = 8192;
+
+/// A parallelepiped divided `l` x `m` x `n`, with a control point at every corner of the division.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lattice {
+    origin: Vec3,
+    /// Columns: the edges S, T, U, cm.
+    edges: Mat3,
+    divisions: [usize; 3],
+    /// How far every control point has moved from its place in the even division, cm.
+    moves: Vec<Vec3>,
+    kinds: Vec<PointKind>,
+    groups: BTreeMap<String, Vec<u32>>,
+    /// Points on the object that stay, and the exponent of their affinity.
+    held: Vec<Vec3>,
+    power: f32,
+}
+
+/// Which control points: by index ranges, both ends included, or by the name of a group; without either all of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Selection {
+    /// Along S, T and U.
+    pub ranges: [Option<(i64, i64)>; 3],
+    /// A named group; with ranges, what is in both.
+    pub group: Option<String>,
+}
+
+/// How selected control points move: scaled and turned about a place, then shifted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Move {
+    /// Shift, cm.
+    pub by: Vec3,
+    /// Stretch along the three axes of space, 1 is none.
+    pub scale: Vec3,
+    /// Rotation.
+    pub turn: glam::Quat,
+    /// The place that stays; the middle of the selected points when not given.
+    pub about: Option<Vec3>,
+}
+
+impl Default for Move {
+    fn default() -> Self {
+        Self { by: Vec3::ZERO, scale: Vec3::ONE, turn: glam::Quat::IDENTITY, about: None }
+    }
+}
+
+impl Lattice {
+    /// A lattice with its corner at `origin` and edges `s`, `t`, `u`, divided evenly (1).
+    ///
+    /// # Errors
+    /// Edges that are flat, left-handed or not finite; divisions out of 1 to [`MOST_DIVISIONS`].
+    pub fn new(origin: Vec3, [s, t, u]: [Vec3; 3], divisions: [u32; 3]) -> Result<Self, DeformError> {
+        for (what, value) in [("the corner", origin), ("edge s", s), ("edge t", t), ("edge u", u)] {
+            if !value.is_finite() {
+                return Err(DeformError::NotFinite { what: what.into(), value });
+            }
+        }
+        let (ds, dt, du) = (s.as_dvec3(), t.as_dvec3(), u.as_dvec3());
+        let volume = dt.cross(du).dot(ds);
+        let longest = ds.length() * dt.length() * du.length();
+        if !(longest > 1e-12 && volume.abs() > 1e-6 * longest) {
+            return Err(DeformError::Flat { s, t, u });
+        }
+        if volume < 0.0 {
+            return Err(DeformError::Inverted { s, t, u });
+        }
+        if let Some(&value) = divisions.iter().find(|d| !(1..=MOST_DIVISIONS).contains(d)) {
+            let (low, high) = (1.0, f64::from(MOST_DIVISIONS));
+            return Err(DeformError::OutOfRange { what: "a division".into(), value: f64::from(value), low, high });
+        }
+        let divisions = divisions.map(|d| d as usize);
+        let count = divisions.iter().map(|d| d + 1).product();
+        Ok(Self {
+            origin,
+            edges: Mat3::from_cols(s, t, u),
+            divisions,
+            moves: vec![Vec3::ZERO; count],
+            kinds: vec![PointKind::Overall; count],
+            groups: BTreeMap::new(),
+            held: vec![],
+            power: 2.0,
+        })
+    }
+
+    /// A lattice along the axes of space.
+    ///
+    /// # Errors
+    /// As [`Lattice::new`].
+    pub fn around(bounds: Bounds, divisions: [u32; 3]) -> Result<Self, DeformError> {
+        let size = bounds.size();
+        let edges = [Vec3::X * size.x, Vec3::Y * size.y, Vec3::Z * size.z];
+        Self::new(bounds.min, edges, divisions)
+    }
+
+    /// Divisions along S, T, U.
+    pub fn divisions(&self) -> [usize; 3] {
+        self.divisions
+    }
+
+    /// The corner and the edges.
+    pub fn frame(&self) -> (Vec3, Mat3) {
+        (self.origin, self.edges)
+    }
+
+    /// How many control points there are.
+    pub fn count(&self) -> usize {
+        self.moves.len()
+    }
+
+    /// The number of a control point.
+    pub fn index(&self, [i, j, k]: [usize; 3]) -> usize {
+        (i * (self.divisions[1] + 1) + j) * (self.divisions[2] + 1) + k
+    }
+
+    /// The indices of control point number `index` along S, T, U.
+    pub fn indices(&self, index: usize) -> [usize; 3] {
+        let (m, n) = (self.divisions[1] + 1, self.divisions[2] + 1);
+        [index / (m * n), index / n % m, index % n]
+    }
+
+    /// Where a control point stands in the even division (1).
+    pub fn rest(&self, index: usize) -> Vec3 {
+        let at = self.indices(index);
+        let part = |a: usize| at[a] as f32 / self.divisions[a] as f32;
+        self.origin + self.edges * Vec3::new(part(0), part(1), part(2))
+    }
+
+    /// Where a control point stands now.
+    pub fn place(&self, index: usize) -> Vec3 {
+        self.rest(index) + self.moves[index]
+    }
+
+    /// What a control point is for.
+    pub fn kind(&self, index: usize) -> PointKind {
+        self.kinds[index]
+    }
+
+    /// Points of the object that are held.
+    pub fn held(&self) -> &[Vec3] {
+        &self.held
+    }
+
+    /// The names of its groups.
+    pub fn groups(&self) -> impl Iterator<Item = &str> {
+        self.groups.keys().map(String::as_str)
+    }
+
+    /// True when no control point has moved.
+    pub fn is_still(&self) -> bool {
+        self.moves.iter().all(|&m| m == Vec3::ZERO)
+    }
+
+    /// Local coordinates (s, t, u) of a place, 0 to 1 inside (2)-(4).
+    pub fn local(&self, p: Vec3) -> Vec3 {
+        (self.inverse() * (p - self.origin).as_dvec3()).as_vec3()
+    }
+
+    /// True for a place that the lattice can move.
+    pub fn contains(&self, p: Vec3) -> bool {
+        let local = self.local(p);
+        local.cmpge(Vec3::ZERO).all() && local.cmple(Vec3::ONE).all()
+    }
+
+    /// The control points of a selection, ascending.
+    ///
+    /// # Errors
+    /// An index or a group that is not there.
+    pub fn select(&self, selection: &Selection) -> Result<Vec<u32>, DeformError> {
+        let mut ranges = [(0, 0); 3];
+        for (a, range) in ranges.iter_mut().enumerate() {
+            let last = self.divisions[a];
+            let (lo, hi) = selection.ranges[a].unwrap_or((0, last as i64));
+            for index in [lo, hi] {
+                if !(0..=last as i64).contains(&index) {
+                    return Err(DeformError::NoControlPoint { axis: ['i', 'j', 'k'][a], index, last });
+                }
+            }
+            *range = (lo.min(hi) as usize, lo.max(hi) as usize);
+        }
+        let inside = |index: u32| {
+            let at = self.indices(index as usize);
+            (0..3).all(|a| (ranges[a].0..=ranges[a].1).contains(&at[a]))
+        };
+        Ok(match &selection.group {
+            None => (0..self.count() as u32).filter(|&i| inside(i)).collect(),
+            Some(name) => self.group(name)?.iter().copied().filter(|&i| inside(i)).collect(),
+        })
+    }
+
+    fn group(&self, name: &str) -> Result<&[u32], DeformError> {
+        let unknown = || DeformError::Unknown {
+            what: "group",
+            name: name.to_owned(),
+            known: self.groups.keys().cloned().collect(),
+        };
+        self.groups.get(name).map(Vec::as_slice).ok_or_else(unknown)
+    }
+
+    /// With a name for these control points.
+    #[must_use]
+    pub fn named(mut self, name: &str, points: Vec<u32>) -> Self {
+        self.groups.insert(name.to_owned(), points);
+        self
+    }
+
+    /// With another kind for these control points.
+    #[must_use]
+    pub fn marked(mut self, points: &[u32], kind: PointKind) -> Self {
+        for &i in points {
+            self.kinds[i as usize] = kind;
+        }
+        self
+    }
+
+    /// With these control points moved from where they stand; those that are fixed stay.
+    ///
+    /// # Errors
+    /// When all of them are fixed, or one would end where numbers end.
+    pub fn moved(self, points: &[u32], by: &Move) -> Result<Self, DeformError> {
+        let free: Vec<u32> = points.iter().copied().filter(|&i| self.is_free(i)).collect();
+        let middle = free.iter().map(|&i| self.place(i as usize)).sum::<Vec3>() / free.len().max(1) as f32;
+        let about = by.about.unwrap_or(middle);
+        self.placed(
+            points,
+            |_, p| if *by == Move::default() { p } else { about + by.turn * ((p - about) * by.scale) + by.by },
+        )
+    }
+
+    /// With these control points where `place` puts them; it is told the number and where the point stands.
+    ///
+    /// # Errors
+    /// As [`Lattice::moved`].
+    pub fn placed(mut self, points: &[u32], mut place: impl FnMut(u32, Vec3) -> Vec3) -> Result<Self, DeformError> {
+        if !points.is_empty() && !points.iter().any(|&i| self.is_free(i)) {
+            return Err(DeformError::AllFixed { count: points.len() });
+        }
+        for &i in points {
+            if !self.is_free(i) {
+                continue;
+            }
+            let now = self.place(i as usize);
+            let target = place(i, now);
+            if !target.is_finite() {
+                let [a, b, c] = self.indices(i as usize);
+                let what = format!("the place of control point {a}, {b}, {c}");
+                return Err(DeformError::NotFinite { what, value: target });
+            }
+            if target != now {
+                self.moves[i as usize] = target - self.rest(i as usize);
+            }
+        }
+        Ok(self)
+    }
+
+    fn is_free(&self, index: u32) -> bool {
+        self.kinds[index as usize] != PointKind::Fixed
+    }
+
+    /// With points of the object that stay where they are. A place moves the less the nearer it is to them: by the part
+    /// of its affinity (inverse distance to the power of `power`) that belongs to moved control points.
+    ///
+    /// # Errors
+    /// A point that is not finite, an exponent out of 0.5 to 8.
+    pub fn holding(mut self, points: &[Vec3], power: f32) -> Result<Self, DeformError> {
+        super::check_power(power)?;
+        if let Some(&value) = points.iter().find(|p| !p.is_finite()) {
+            return Err(DeformError::NotFinite { what: "a held point".into(), value });
+        }
+        self.held.extend_from_slice(points);
+        self.power = power;
+        Ok(self)
+    }
+
+    /// The next step: overall control points follow the feature points, pulled back by the fixed ones, with each one's
+    /// affinity. Without a moved feature point or a fixed point nothing happens.
+    ///
+    /// # Errors
+    /// As [`Pins::new`](super::Pins::new).
+    pub fn followed(self, power: f32) -> Result<Self, DeformError> {
+        let of = |kind: PointKind| -> Vec<usize> { (0..self.count()).filter(|&i| self.kinds[i] == kind).collect() };
+        let feature: Vec<(Vec3, Vec3)> = (of(PointKind::Feature).into_iter())
+            .filter(|&i| self.moves[i] != Vec3::ZERO)
+            .map(|i| (self.rest(i), self.place(i)))
+            .collect();
+        let fixed: Vec<Vec3> = of(PointKind::Fixed).into_iter().map(|i| self.place(i)).collect();
+        if feature.is_empty() || fixed.is_empty() {
+            return Ok(self);
+        }
+        let pins = super::Pins::new(&fixed, &feature, power)?;
+        let free: Vec<u32> = of(PointKind::Overall).into_iter().map(|i| i as u32).collect();
+        if free.is_empty() {
+            return Ok(self);
+        }
+        self.placed(&free, |_, p| pins.at(p))
+    }
+
+    fn inverse(&self) -> DMat3 {
+        let [s, t, u] = [0, 1, 2].map(|a| self.edges.col(a).as_dvec3());
+        let volume = t.cross(u).dot(s);
+        let rows: [DVec3; 3] = [t.cross(u) / volume, u.cross(s) / volume, s.cross(t) / volume];
+        DMat3::from_cols(rows[0], rows[1], rows[2]).transpose()
+    }
+
+    /// Where one place goes.
+    pub fn at(&self, p: Vec3) -> Vec3 {
+        let mut out = [p];
+        let _ = self.apply(&[p], &mut out, &Task::new());
+        out[0]
+    }
+
+    /// Moves `points` to `out`, of the same length. What is outside stays to the bit, and so does every place whose
+    /// control points have not moved.
+    ///
+    /// # Errors
+    /// Cancelling.
+    pub fn apply(&self, points: &[Vec3], out: &mut [Vec3], task: &Task) -> Result<(), DeformError> {
+        let grid = Grid::new(self.origin, &self.inverse(), self.divisions, &self.moves);
+        let limit = self.limit();
+        points.par_chunks(PIECE).zip(out.par_chunks_mut(PIECE)).try_for_each(|(from, to)| {
+            task.check()?;
+            kernel::lattice(&grid, from, to);
+            if let Some(limit) = &limit {
+                kernel::limit(limit, from, to);
+            }
+            Ok(())
+        })
+    }
+
+    fn limit(&self) -> Option<Limit> {
+        let moved: Vec<Vec3> =
+            (0..self.count()).filter(|&i| self.moves[i] != Vec3::ZERO).map(|i| self.rest(i)).collect();
+        (!self.held.is_empty()).then(|| Limit { moved, held: self.held.clone(), power: self.power })
+    }
+
+    /// Feeds all of it to a key that has a say in where points go.
+    pub fn digest(&self, into: &mut Digest) {
+        into.bytes(b"lattice 1").vectors(&[self.origin, self.edges.x_axis, self.edges.y_axis, self.edges.z_axis]);
+        into.numbers(&self.divisions.map(|d| d as u32)).vectors(&self.moves);
+        into.vectors(&self.held).floats(&[self.power]);
+    }
+}
