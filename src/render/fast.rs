@@ -26,10 +26,10 @@ pub fn floor(x: f32) -> u32 {
     (x - 0.5 + WHOLE).to_bits() & 0x3f_ffff
 }
 
-/// The least whole number not under `x`, which is at least 0; 0 for NaN and below.
+/// The least whole number not under `x`, which is at least 0; 0 for NaN and below. Up to 2 thousand million.
 pub fn ceil(x: f32) -> usize {
-    let whole = x as usize;
-    whole + usize::from((whole as f32) < x)
+    let whole = x as i32;
+    (whole + i32::from((whole as f32) < x)).max(0) as usize
 }
 
 /// sRGB bytes of 4096 linear values 0..=1, denser towards black: index is the square root.
@@ -44,7 +44,9 @@ static ENCODE: LazyLock<Vec<u8>> = LazyLock::new(|| {
 
 /// sRGB bytes of a linear colour, clamped to 0..=1; NaN becomes 0.
 pub fn encode(linear: Vec3) -> [u8; 3] {
-    linear.to_array().map(|c| ENCODE[(c.clamp(0.0, 1.0).sqrt() * 4095.0 + 0.5) as usize])
+    let table: &[u8] = &ENCODE;
+    let byte = |c: f32| table[(c.clamp(0.0, 1.0).sqrt() * 4095.0 + 0.5) as usize];
+    [byte(linear.x), byte(linear.y), byte(linear.z)]
 }
 
 #[cfg(test)]

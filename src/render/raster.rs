@@ -13,9 +13,9 @@ use crate::task::{Cancelled, Task};
 use super::camera::Camera;
 use super::fast;
 use super::shade::Studio;
-use super::strands::{Bundle, Chunk, Vertex, gather};
+use super::strands::{Bundle, gather};
 use super::surface::Layer;
-use super::tiles::{Tiles, first_vertex};
+use super::tiles::{Binned, Segment, Tiles, Vertex, behind};
 use super::veil::{Holes, Sieve, Veil};
 
 /// A pixel through which less than this passes is finished: what is there is scaled up to fill it.
@@ -59,24 +59,31 @@ fn rounds(bundles: &[Bundle], canvas: &Canvas, tiles: Tiles, veil: &Veil, task: 
     let camera = canvas.camera;
     let front = gather(bundles, camera, tiles, Sieve { veil, holes: None }, canvas.studio, task)?;
     task.progress("hair: tiles", 0.6);
+    let touched = |chunks: &[Binned], tile: usize| chunks.iter().any(|c| !c.of(tile).is_empty());
+    // Most of a picture is free of hair: a tile without any is made at the very end.
     let drawn = (0..tiles.count())
         .into_par_iter()
         .map(|tile| {
             task.check()?;
-            let mut pixels = Tile::new(canvas, tiles, tile);
-            pixels.lines(&front, canvas, tile);
-            Ok(pixels)
+            Ok(touched(&front, tile).then(|| {
+                let mut pixels = Tile::new(canvas, tiles, tile);
+                pixels.lines(&front, canvas, tile);
+                pixels
+            }))
         })
-        .collect::<Result<Vec<Tile>, Cancelled>>()?;
+        .collect::<Result<Vec<Option<Tile>>, Cancelled>>()?;
     let mut holes = Holes::new(camera.width, camera.height);
-    drawn.iter().for_each(|tile| tile.tell(&mut holes));
+    drawn.iter().flatten().for_each(|tile| tile.tell(&mut holes));
     let behind = gather(bundles, camera, tiles, Sieve { veil, holes: Some(&holes) }, canvas.studio, task)?;
     let drawn = drawn
         .into_par_iter()
         .enumerate()
-        .map(|(tile, mut pixels)| {
+        .map(|(tile, pixels)| {
             task.check()?;
-            pixels.lines(&behind, canvas, tile);
+            let mut pixels = pixels.unwrap_or_else(|| Tile::new(canvas, tiles, tile));
+            if touched(&behind, tile) {
+                pixels.lines(&behind, canvas, tile);
+            }
             Ok(pixels.resolve(canvas))
         })
         .collect::<Result<Vec<Vec<[u8; 3]>>, Cancelled>>()?;
@@ -152,11 +159,16 @@ impl Tile {
     }
 
     /// Lays all segments of the tile over each other, nearest first.
-    fn lines(&mut self, chunks: &[Chunk], canvas: &Canvas, tile: usize) {
-        let count = chunks.iter().map(|c| c.binned.of(tile).len()).sum();
-        let mut order = Vec::<(u64, u32)>::with_capacity(count);
-        for (c, chunk) in chunks.iter().enumerate() {
-            order.extend(chunk.binned.of(tile).iter().map(|&key| (key, c as u32)));
+    fn lines(&mut self, chunks: &[Binned], canvas: &Canvas, tile: usize) {
+        let count = chunks.iter().map(|c| c.of(tile).len()).sum();
+        let mut order = Vec::<u64>::with_capacity(count);
+        // Side by side, for in the order of depth they are scattered over all chunks.
+        let mut pieces = Vec::<(Segment, bool)>::with_capacity(count);
+        for chunk in chunks {
+            for segment in chunk.of(tile) {
+                order.push(u64::from(behind(segment)) << 32 | pieces.len() as u64);
+                pieces.push((*segment, chunk.shaded));
+            }
         }
         // Nearest first, and only as much in order as it takes: once the nearest hair has closed the tile, the rest
         // does not matter.
@@ -168,22 +180,19 @@ impl Tile {
             }
             let (near, beyond) = rest.split_at_mut(count);
             near.sort_unstable();
-            for &(key, chunk) in near.iter() {
-                let chunk = &chunks[chunk as usize];
-                let first = first_vertex(key);
-                let ends = [&chunk.vertices[first], &chunk.vertices[first + 1]];
-                if self.is_hidden(ends) {
-                    continue;
+            for &key in near.iter() {
+                let (segment, shaded) = &pieces[(key & u64::from(u32::MAX)) as usize];
+                if !self.is_hidden(segment) {
+                    self.segment(segment, *shaded, canvas);
                 }
-                self.segment(ends, chunk.shaded, canvas);
             }
             rest = beyond;
         }
     }
 
     /// True when every block of pixels that a line may touch is finished.
-    fn is_hidden(&self, ends: [&Vertex; 2]) -> bool {
-        let [a, b] = ends.map(|v| v.at);
+    fn is_hidden(&self, ends: &Segment) -> bool {
+        let (a, b) = (ends[0].at, ends[1].at);
         let margin = 0.75 * ends[0].width.max(ends[1].width) + 1.0;
         let range = |a: f32, b: f32, origin: usize| {
             let block = |x: f32| ((x * (1.0 / BLOCK as f32)).max(0.0) as u32).min(BLOCKS as u32 - 1);
@@ -208,16 +217,16 @@ impl Tile {
 
     /// Draws one segment: per step along its longer axis, the part of each pixel that its width covers across. Summed
     /// over the pixels of a step that is exactly the width, wherever between them the line runs.
-    fn segment(&mut self, ends: [&Vertex; 2], shaded: bool, canvas: &Canvas) {
+    fn segment(&mut self, [e0, e1]: &Segment, shaded: bool, canvas: &Canvas) {
         let origin = Vec3::new(self.x0 as f32 + 0.5, self.y0 as f32 + 0.5, 0.0);
-        let d = ends[1].at - ends[0].at;
+        let d = e1.at - e0.at;
         let steep = d.y.abs() > d.x.abs();
         // Along the longer axis there is one row of pixels per step; `u` runs along it.
         let turn = |v: &Vertex| {
             let p = v.at - origin;
             if steep { Vec3::new(p.y, p.x, p.z) } else { p }
         };
-        let [va, vb] = if (if steep { d.y } else { d.x }) < 0.0 { [ends[1], ends[0]] } else { ends };
+        let [va, vb] = if (if steep { d.y } else { d.x }) < 0.0 { [e1, e0] } else { [e0, e1] };
         let (a, b) = (turn(va), turn(vb));
         let d = b - a;
         let length = d.truncate().length();
@@ -234,7 +243,7 @@ impl Tile {
         let (nu, nv) = if steep { (self.height, self.width) } else { (self.width, self.height) };
         let (across, along) = if steep { (1, EDGE) } else { (EDGE, 1) };
         let (first, end) = (fast::ceil(a.x - more), fast::ceil(b.x + more).min(nu));
-        let (ca, cb) = (va.colour.extend(0.0), vb.colour.extend(0.0));
+        let (ca, cb) = (va.colour().extend(0.0), vb.colour().extend(0.0));
         // What is seen through gaps between other strands lies in their shadow, finer than any grid shows.
         let (lit0, lit1) = if shaded { (0.45, 0.80) } else { (1.0, 0.0) };
         for u in first..end {
@@ -416,7 +425,9 @@ mod tests {
             assert!(mean < 0.25 && far < 2e-3, "{view:?}: {mean} off, {far} of all by more than 8");
             let veil = Veil::new(&bundles, &camera, &layer, 1.0, ON_SURFACE, &task).unwrap();
             let sieve = |veil| gather(&bundles, &camera, tiles, Sieve { veil, holes: None }, &studio, &task).unwrap();
-            let count = |chunks: &[Chunk]| chunks.iter().map(|c| c.vertices.len()).sum::<usize>();
+            let count = |chunks: &[Binned]| {
+                chunks.iter().map(|c| (0..tiles.count()).map(|t| c.of(t).len()).sum::<usize>()).sum::<usize>()
+            };
             let (some, all) = (count(&sieve(&veil)), count(&sieve(&Veil::none(&camera))));
             assert!(some * 3 < all * 2, "{view:?}: {some} of {all} are drawn at once");
         }

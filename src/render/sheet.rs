@@ -1,6 +1,7 @@
 //! The preview sheet: every view at one scale, with quiet lettering.
 
 use glam::{Mat3, Vec3};
+use rayon::prelude::*;
 use tiny_skia::{Paint, Pixmap, Rect, Transform};
 
 use crate::geometry::{Mesh, Strands};
@@ -150,6 +151,18 @@ impl Layout {
         Ok(Self { columns, rows, head, caption, foot, margin, letter, width, height })
     }
 
+    /// Which rows of the sheet hold letters, when none are in the views of this height.
+    fn written(&self, views: Option<u32>) -> Vec<bool> {
+        let free = |y: u32| {
+            let row = y.checked_sub(self.head)?;
+            let height = views?;
+            Some(row < self.rows * (height + self.caption) && row % (height + self.caption) < height)
+        };
+        // A letter may reach a little into the view over it.
+        let near = |y: u32| (0..=2).any(|d| !free(y + d).unwrap_or(false));
+        (0..self.height).map(near).collect()
+    }
+
     /// Upper left corner of view `i`.
     fn corner(&self, i: usize, options: &SheetOptions) -> (u32, u32) {
         let (column, row) = (i as u32 % self.columns, i as u32 / self.columns);
@@ -189,13 +202,19 @@ pub fn sheet(scene: &Scene, options: &SheetOptions, task: &Task) -> Result<Pictu
     let sights: Vec<Mat3> = views.iter().map(|&view| axes(view)).collect();
     let framing = frame(scene, &sights);
     let mut picture = blank(layout.width, layout.height, paper.paper);
+    // Side by side, so that a view's last work fills what the next one leaves free.
+    let drawn: Result<Vec<_>, Cancelled> = sights
+        .par_iter()
+        .zip(&framing.centres)
+        .map(|(&sight, &centre)| {
+            let camera = camera(sight, centre, &framing, options);
+            let (pixels, words) = stage.view(scene, &camera, options, paper.paper, task)?;
+            Ok((camera, pixels, words))
+        })
+        .collect();
     let mut labels = Vec::new();
-    for (i, &sight) in sights.iter().enumerate() {
-        let camera = camera(sight, framing.centres[i], &framing, options);
-        let words = stage.view(scene, &camera, options, paper.paper, task).map(|(pixels, words)| {
-            paste(&mut picture, &pixels, layout.corner(i, options), options.width);
-            words
-        })?;
+    for (i, (camera, pixels, words)) in drawn?.into_iter().enumerate() {
+        paste(&mut picture, &pixels, layout.corner(i, options), options.width);
         labels.push((camera, words));
     }
     task.progress("lettering", 0.95);
@@ -225,7 +244,7 @@ pub fn views(
     let own = if framing.is_none() { Some(frame(scene, sights)) } else { None };
     let Some(framing) = framing.or(own.as_ref()) else { return Ok(vec![]) };
     sights
-        .iter()
+        .par_iter()
         .zip(&framing.centres)
         .map(|(&sight, &centre)| {
             let camera = camera(sight, centre, framing, options);
@@ -392,7 +411,12 @@ fn letter(
     paper: &Paper,
     labels: &[(Camera, Vec<Label>)],
 ) {
-    let Some(mut pixmap) = to_pixmap(picture) else { return };
+    let Some(mut pixmap) = Pixmap::new(picture.width, picture.height) else { return };
+    let shown = labels.iter().all(|(_, words)| words.is_empty()).then_some(options.height);
+    let written = layout.written(shown);
+    copy_rows(&mut picture.pixels, pixmap.data_mut(), &written, |rgb, rgba| {
+        rgba.copy_from_slice(&[rgb[0], rgb[1], rgb[2], 255]);
+    });
     let (w, h) = (layout.width as f32, layout.height as f32);
     let (size, margin) = (layout.letter, layout.margin as f32);
     let title = lettering::fitted(&scene.name, 1.5 * size, w - 2.0 * margin);
@@ -421,9 +445,18 @@ fn letter(
     if scene.look.debug {
         legend(&mut pixmap, scene, end + 2.5 * size, base, w - margin, size, paper.quiet);
     }
-    for (rgb, p) in picture.pixels.chunks_exact_mut(3).zip(pixmap.pixels()) {
-        rgb.copy_from_slice(&[p.red(), p.green(), p.blue()]);
-    }
+    copy_rows(&mut picture.pixels, pixmap.data_mut(), &written, |rgb, rgba| rgb.copy_from_slice(&rgba[..3]));
+}
+
+/// Calls `copy` for every pixel of some rows of a picture and of a pixmap.
+fn copy_rows(rgb: &mut [u8], rgba: &mut [u8], written: &[bool], copy: impl Fn(&mut [u8], &mut [u8]) + Sync) {
+    let width = rgb.len() / written.len().max(1) / 3;
+    let rows = rgb.par_chunks_exact_mut(3 * width.max(1)).zip(rgba.par_chunks_exact_mut(4 * width.max(1)));
+    rows.zip(written).filter(|(_, written)| **written).for_each(|((rgb, rgba), _)| {
+        for (rgb, rgba) in rgb.chunks_exact_mut(3).zip(rgba.chunks_exact_mut(4)) {
+            copy(rgb, rgba);
+        }
+    });
 }
 
 pub(super) fn to_pixmap(picture: &Picture) -> Option<Pixmap> {
@@ -482,8 +515,8 @@ fn figures(scene: &Scene) -> String {
     for (_, hair) in scene.hair() {
         let strands = if scene.look.debug { &hair.guides } else { &hair.strands };
         count += strands.count();
-        for i in 0..strands.count() {
-            let length = strands.length(i);
+        let lengths: Vec<f32> = (0..strands.count()).into_par_iter().map(|i| strands.length(i)).collect();
+        for length in lengths {
             total += f64::from(length);
             longest = longest.max(length);
         }
