@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::geometry::{Root, Strands};
+use crate::geometry::{Mesh, Root, Strands};
 use crate::head::Head;
 use crate::math::Digest;
 use crate::task::Warning;
@@ -30,6 +30,12 @@ impl Kept for Strands {
 impl Kept for Head {
     fn bytes(&self) -> usize {
         Self::bytes(self)
+    }
+}
+
+impl Kept for Mesh {
+    fn bytes(&self) -> usize {
+        (self.positions.len() + self.normals.len()) * 12 + self.uvs.len() * 8 + self.triangles.len() * 12
     }
 }
 
@@ -129,6 +135,11 @@ impl Memo {
     /// True when there is nothing in it.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// True when there is a value with this key.
+    pub fn has(&self, key: u128) -> bool {
+        self.shelf().items.contains_key(&key)
     }
 
     /// The value with this key and the warnings of its computation.

@@ -8,7 +8,7 @@ use mlua::Lua;
 
 use super::super::call::{Call, Result};
 use super::super::files::tidy;
-use super::super::host::{self, Options};
+use super::super::host::{self, Options, SetBy};
 use super::super::registry::{Entry, Lookup, Noun};
 use super::super::session::{Raised, Session, session};
 use super::super::testing::Tests;
@@ -131,7 +131,7 @@ pub fn run(call: &Call) -> Result<Value> {
     let script = tidy(&call.session.options.folder().join(&fields.script));
     // Read here too: the test file's own limits hold, and a misspelt path is told at once.
     call.session.access.read(&script).map_err(|e| call.problem_at("script", e.to_string(), e.hint()))?;
-    let options = Options { script, set: BTreeMap::new(), ..call.session.options.clone() };
+    let options = Options { script, set: BTreeMap::new(), set_by: SetBy::Table, ..call.session.options.clone() };
     let options = match &fields.parameters {
         Some(parameters) => set(call, options, parameters)?,
         None => options,
@@ -170,7 +170,7 @@ fn set(call: &Call, mut options: Options, parameters: &Value) -> Result<Options>
                 if n.fract() != 0.0 || !(0.0..=9_007_199_254_740_992.0).contains(n) {
                     return wrong(format!("`{n}` is not a seed: a whole number, 0 or more"));
                 }
-                options.seed = *n as u64;
+                (options.seed, options.names_seed) = (*n as u64, true);
                 continue;
             }
             Value::Number(n) => n.to_string(),
