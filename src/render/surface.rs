@@ -163,7 +163,7 @@ impl Weights {
     fn of(c: &[Vec3; 3]) -> Option<Self> {
         let (a, b) = ((c[1] - c[0]).truncate(), (c[2] - c[0]).truncate());
         let area = a.perp_dot(b);
-        if !(area.abs() >= 1e-12) {
+        if area.abs() < 1e-12 || area.is_nan() {
             return None;
         }
         let (x, y) = (Vec2::new(b.y, -a.y) / area, Vec2::new(-b.x, a.x) / area);
