@@ -58,7 +58,6 @@ pub fn draw(bundles: &[Bundle], canvas: &Canvas, task: &Task) -> Result<Vec<u8>,
 fn rounds(bundles: &[Bundle], canvas: &Canvas, tiles: Tiles, veil: &Veil, task: &Task) -> Result<Vec<u8>, Cancelled> {
     let camera = canvas.camera;
     let front = gather(bundles, camera, tiles, Sieve { veil, holes: None }, canvas.studio, task)?;
-    task.progress("hair: tiles", 0.6);
     let touched = |chunks: &[Binned], tile: usize| chunks.iter().any(|c| !c.of(tile).is_empty());
     // Most of a picture is free of hair: a tile without any is made at the very end.
     let drawn = (0..tiles.count())

@@ -1,5 +1,7 @@
 //! The preview sheet: every view at one scale, with quiet lettering.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::{Mat3, Vec3};
 use rayon::prelude::*;
 use tiny_skia::{Paint, Pixmap, Rect, Transform};
@@ -43,14 +45,14 @@ pub struct SheetOptions {
     pub supersample: u32,
     /// Width of a drawn strand as a multiple of its own, 1 to 64: hair thinned out to one strand in eight looks as dense as
     /// the whole when each is drawn eight times as wide.
-    pub stroke: f32,
+    pub strand_width: f32,
     /// Names, figures and a scale bar around the views.
     pub lettering: bool,
 }
 
 impl Default for SheetOptions {
     fn default() -> Self {
-        Self { width: 640, height: 720, columns: None, supersample: 2, stroke: 1.0, lettering: true }
+        Self { width: 640, height: 720, columns: None, supersample: 2, strand_width: 1.0, lettering: true }
     }
 }
 
@@ -72,9 +74,9 @@ pub enum RenderError {
         /// Most allowed.
         most: u32,
     },
-    /// A stroke that is not between its limits.
-    #[error("a stroke of `{value}` is not between 1 and {MOST_STROKE}")]
-    Stroke {
+    /// A strand width that is not between its limits.
+    #[error("a strand width of `{value}` is not between 1 and {MOST_WIDTH}")]
+    StrandWidth {
         /// Its value.
         value: f32,
     },
@@ -94,7 +96,7 @@ pub enum RenderError {
 pub(super) const MOST_PIXELS: u64 = 200;
 
 /// Largest multiple of a strand's width.
-const MOST_STROKE: f32 = 64.0;
+const MOST_WIDTH: f32 = 64.0;
 
 /// Where everything stands on the sheet, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,8 +129,8 @@ impl Layout {
                 return Err(RenderError::Size { what, value, least, most });
             }
         }
-        if !(1.0..=MOST_STROKE).contains(&options.stroke) {
-            return Err(RenderError::Stroke { value: options.stroke });
+        if !(1.0..=MOST_WIDTH).contains(&options.strand_width) {
+            return Err(RenderError::StrandWidth { value: options.strand_width });
         }
         let n = views.max(1) as u32;
         let columns = options.columns.unwrap_or(match n {
@@ -197,18 +199,19 @@ pub fn sheet(scene: &Scene, options: &SheetOptions, task: &Task) -> Result<Pictu
     let layout = Layout::new(views.len(), options)?;
     let paper = paper(scene.look.background);
     task.progress("density", 0.0);
-    let stage = Stage::new(scene, options.stroke, task)?;
+    let stage = Stage::new(scene, options.strand_width, task)?;
     task.progress("framing", 0.0);
     let sights: Vec<Mat3> = views.iter().map(|&view| axes(view)).collect();
     let framing = frame(scene, &sights);
     let mut picture = blank(layout.width, layout.height, paper.paper);
+    let steps = Steps { task, done: AtomicUsize::new(0), all: STEPS * views.len() };
     // Side by side, so that a view's last work fills what the next one leaves free.
     let drawn: Result<Vec<_>, Cancelled> = sights
         .par_iter()
         .zip(&framing.centres)
         .map(|(&sight, &centre)| {
             let camera = camera(sight, centre, &framing, options);
-            let (pixels, words) = stage.view(scene, &camera, options, paper.paper, task)?;
+            let (pixels, words) = stage.view(scene, &camera, options, paper.paper, &steps)?;
             Ok((camera, pixels, words))
         })
         .collect();
@@ -240,15 +243,16 @@ pub fn views(
 ) -> Result<Vec<Picture>, RenderError> {
     Layout::new(sights.len(), &SheetOptions { lettering: false, columns: None, ..*options })?;
     let paper = paper(scene.look.background);
-    let stage = Stage::new(scene, options.stroke, task)?;
+    let stage = Stage::new(scene, options.strand_width, task)?;
     let own = if framing.is_none() { Some(frame(scene, sights)) } else { None };
     let Some(framing) = framing.or(own.as_ref()) else { return Ok(vec![]) };
+    let steps = Steps { task, done: AtomicUsize::new(0), all: STEPS * sights.len() };
     sights
         .par_iter()
         .zip(&framing.centres)
         .map(|(&sight, &centre)| {
             let camera = camera(sight, centre, framing, options);
-            let (pixels, _) = stage.view(scene, &camera, options, paper.paper, task)?;
+            let (pixels, _) = stage.view(scene, &camera, options, paper.paper, &steps)?;
             Ok(Picture { width: options.width, height: options.height, pixels })
         })
         .collect()
@@ -284,6 +288,25 @@ pub(super) fn paste(picture: &mut Picture, view: &[u8], (x, y): (u32, u32), widt
     }
 }
 
+/// How far the views of a sheet are, which are drawn at once.
+struct Steps<'a> {
+    task: &'a Task,
+    done: AtomicUsize,
+    all: usize,
+}
+
+/// Steps of one view: its light, its head, its hair.
+const STEPS: usize = 3;
+
+impl Steps<'_> {
+    /// Notes that a step of some view is done.
+    fn step(&self) -> Result<(), Cancelled> {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        self.task.progress("views", done as f32 / self.all.max(1) as f32);
+        self.task.check()
+    }
+}
+
 /// What all views of a scene share.
 struct Stage {
     meshes: Vec<(Mesh, Skin, Option<Vec<Vec3>>)>,
@@ -294,7 +317,7 @@ struct Stage {
 }
 
 impl Stage {
-    fn new(scene: &Scene, stroke: f32, task: &Task) -> Result<Self, Cancelled> {
+    fn new(scene: &Scene, strand_width: f32, task: &Task) -> Result<Self, Cancelled> {
         let mut meshes = Vec::new();
         for part in &scene.parts {
             if let Body::Mesh(mesh, material) = &part.body {
@@ -324,7 +347,7 @@ impl Stage {
             .hair()
             .filter(|_| !scene.look.debug)
             .map(|(_, h)| {
-                let width = h.material.width * stroke;
+                let width = h.material.width * strand_width;
                 (&*h.strands, width, width * h.material.taper)
             })
             .collect();
@@ -341,21 +364,20 @@ impl Stage {
         camera: &Camera,
         options: &SheetOptions,
         paper: Colour,
-        task: &Task,
+        steps: &Steps,
     ) -> Result<(Vec<u8>, Vec<Label>), Cancelled> {
+        let task = steps.task;
         let ss = options.supersample as usize;
         let fine = camera.enlarged(ss);
         let meshes: Vec<&Mesh> = self.meshes.iter().map(|(mesh, ..)| mesh).collect();
-        task.progress("light", 0.0);
         let studio = Studio::new(&fine, &self.density, &meshes, &self.sky);
-        task.check()?;
+        steps.step()?;
         let shell = |(mesh, skin, tints): &'a (Mesh, Skin, Option<Vec<Vec3>>)| Shell {
             mesh,
             skin: *skin,
             tints: tints.as_deref(),
         };
         let shells: Vec<Shell> = self.meshes.iter().map(shell).collect();
-        task.progress("head", 0.2);
         let layer = match &self.toon {
             Some(toon) => toon.draw(&fine, ss, task)?,
             None => surface::draw(&shells, &fine, &studio, task)?,
@@ -364,7 +386,7 @@ impl Stage {
         let drawing = scene.look.debug.then(|| overlay::draw(scene, camera, pen));
         let mut bundles: Vec<Bundle> = match &drawing {
             Some(drawing) => drawing.wires.iter().map(|w| w.bundle(ss as f32)).collect(),
-            None => scene.hair().map(|(_, hair)| bundle(hair, fine.scale * options.stroke)).collect(),
+            None => scene.hair().map(|(_, hair)| bundle(hair, fine.scale * options.strand_width)).collect(),
         };
         let flat: Vec<Vec<Vec3>> = match &self.toon {
             Some(toon) => scene.hair().map(|(_, hair)| toon.strands(hair, &fine)).collect(),
@@ -382,8 +404,9 @@ impl Stage {
             background: paper.to_linear(),
             fade: 0.10,
         };
-        task.progress("hair", 0.4);
+        steps.step()?;
         let pixels = raster::draw(&bundles, &canvas, task)?;
+        steps.step()?;
         Ok((pixels, drawing.map(|d| d.labels).unwrap_or_default()))
     }
 }
