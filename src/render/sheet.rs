@@ -19,7 +19,7 @@ use super::shade::{Coat, Skin, Sky, Studio};
 use super::shadow::{Density, density};
 use super::strands::{Bundle, Ink};
 use super::surface::{self, Shell};
-use super::toon::Toon;
+use super::toon::{self, Toon};
 
 /// An opaque picture, sRGB.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -91,6 +91,9 @@ pub enum RenderError {
         most: u64,
     },
 }
+
+/// Height of the strip at the lower border that fades out, as a fraction of a view's.
+const FADE: f32 = 0.10;
 
 /// Most pixels of a sheet, in millions.
 pub(super) const MOST_PIXELS: u64 = 200;
@@ -319,6 +322,12 @@ struct Stage {
 impl Stage {
     fn new(scene: &Scene, strand_width: f32, task: &Task) -> Result<Self, Cancelled> {
         let mut meshes = Vec::new();
+        // Flat tones need neither shadows in hair nor a sky.
+        if scene.look.shading == Shading::Toon && !scene.look.debug {
+            let density = density(&[], &[], task)?;
+            let sky = Sky::new(&density, task)?;
+            return Ok(Self { meshes, density, sky, toon: Some(Toon::new(scene)) });
+        }
         for part in &scene.parts {
             if let Body::Mesh(mesh, material) = &part.body {
                 task.check()?;
@@ -336,12 +345,6 @@ impl Stage {
                 let skin = Skin::new(&MeshMaterial { roughness, ..MeshMaterial::default() });
                 meshes.push((locks.mesh.mesh.clone(), skin, Some(tints)));
             }
-        }
-        // Flat tones need neither shadows in hair nor a sky.
-        if scene.look.shading == Shading::Toon && !scene.look.debug {
-            let density = density(&[], &[], task)?;
-            let sky = Sky::new(&density, task)?;
-            return Ok(Self { meshes: vec![], density, sky, toon: Some(Toon::new(scene)) });
         }
         let hair: Vec<(&Strands, f32, f32)> = scene
             .hair()
@@ -368,6 +371,11 @@ impl Stage {
     ) -> Result<(Vec<u8>, Vec<Label>), Cancelled> {
         let task = steps.task;
         let ss = options.supersample as usize;
+        if let (Some(toon), None) = (&self.toon, scene.hair().next()) {
+            task.progress("surfaces", 0.2);
+            let paper = toon::Paper { background: paper.to_linear(), fade: FADE };
+            return Ok((toon.picture(camera, ss, paper, task)?, vec![]));
+        }
         let fine = camera.enlarged(ss);
         let meshes: Vec<&Mesh> = self.meshes.iter().map(|(mesh, ..)| mesh).collect();
         let studio = Studio::new(&fine, &self.density, &meshes, &self.sky);
@@ -402,7 +410,7 @@ impl Stage {
             layer: &layer,
             solid: if drawing.is_some() { 0.45 } else { 1.0 },
             background: paper.to_linear(),
-            fade: 0.10,
+            fade: FADE,
         };
         steps.step()?;
         let pixels = raster::draw(&bundles, &canvas, task)?;
