@@ -10,9 +10,9 @@ use super::camera::Camera;
 use super::shade::{Reach, Skin, Studio};
 
 /// Rows of pixels that one task draws.
-pub(super) const BAND: usize = 16;
+const BAND: usize = 16;
 /// Rotated grid of samples within a pixel.
-pub(super) const SAMPLES: [Vec2; 4] =
+const SAMPLES: [Vec2; 4] =
     [Vec2::new(0.375, 0.125), Vec2::new(0.875, 0.375), Vec2::new(0.125, 0.625), Vec2::new(0.625, 0.875)];
 
 /// A surface and its material, ready to be drawn.
@@ -40,7 +40,7 @@ pub struct Layer {
 }
 
 /// A triangle in the picture.
-pub(super) struct Face {
+struct Face {
     /// In pixels, with depth.
     pub corners: [Vec3; 3],
     /// Index of its mesh.
@@ -50,7 +50,7 @@ pub(super) struct Face {
 }
 
 /// All triangles that can be seen, and those of each band of rows.
-pub(super) struct Faces {
+struct Faces {
     /// In the order of the meshes.
     pub faces: Vec<Face>,
     /// Per band of [`BAND`] rows: indices into `faces`.
@@ -58,11 +58,7 @@ pub(super) struct Faces {
 }
 
 /// Projects the triangles of all `meshes`.
-pub(super) fn faces<'a>(
-    meshes: impl Iterator<Item = &'a Mesh>,
-    camera: &Camera,
-    task: &Task,
-) -> Result<Faces, Cancelled> {
+fn faces<'a>(meshes: impl Iterator<Item = &'a Mesh>, camera: &Camera, task: &Task) -> Result<Faces, Cancelled> {
     let (width, height) = (camera.width, camera.height);
     let mut all = Faces { faces: Vec::new(), of_band: vec![Vec::new(); height.div_ceil(BAND)] };
     for (shell, mesh) in meshes.enumerate() {
@@ -87,7 +83,7 @@ pub(super) fn faces<'a>(
 }
 
 /// What is nearest in each sample of `rows` rows from `top` on, [`SAMPLES`] per pixel: depths and indices into `faces`.
-pub(super) fn nearest(faces: &[Face], list: &[u32], width: usize, top: usize, rows: usize) -> (Vec<f32>, Vec<u32>) {
+fn nearest(faces: &[Face], list: &[u32], width: usize, top: usize, rows: usize) -> (Vec<f32>, Vec<u32>) {
     let n = SAMPLES.len();
     let mut depth = vec![f32::NEG_INFINITY; width * rows * n];
     let mut owner = vec![u32::MAX; width * rows * n];
@@ -142,12 +138,6 @@ pub fn draw(shells: &[Shell], camera: &Camera, studio: &Studio, task: &Task) -> 
         layer.colour.extend(band.colour);
     }
     Ok(layer)
-}
-
-/// Barycentric weights of `p` in the triangle; all at least 0 inside.
-pub(super) fn weights(c: &[Vec3; 3], p: Vec2) -> Option<[f32; 3]> {
-    let w = Weights::of(c)?.at(p);
-    (w.min_element() >= 0.0).then_some(w.to_array())
 }
 
 /// Barycentric weights as linear functions of the place.
