@@ -18,7 +18,9 @@ pub mod shadow;
 pub mod sheet;
 pub mod strands;
 pub mod surface;
+pub mod tiles;
 pub mod toon;
+pub mod veil;
 
 #[cfg(test)]
 mod tests;
