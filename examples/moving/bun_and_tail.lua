@@ -77,5 +77,5 @@ local front = {
 
 return coif.scene {
   head, coif.cap { thickness = 0.7, material = p.hair }, combed, bun, tie, front, moving,
-  shading = "toon", skin = "#f3cfb4", views = { "front", "three-quarter", "back" }, motion = turn, still = 14,
+  shading = "toon", skin = "#f3cfb4", views = { "back", "three-quarter", "front" }, motion = turn, still = 14,
 }
