@@ -1,0 +1,339 @@
+//! Posing a rig: where the handles are given, the states' weights and all other vertices are found.
+//!
+//! Wanted are `x` and `w` with the least `|G x - M(w)|^2` (Sumner et al. 2005; equation 8 of Ren, Zhao, Geng 2010). For
+//! given weights `x` is linear, so it is eliminated (variable projection, Golub, Pereyra 1973): with the factored
+//! `A = G^T G` one iteration solves for `x(w)` and for `dx/dw_i`, all right-hand sides at once, and the weights get the
+//! Gauss-Newton step of the small system
+//!
+//! ```text
+//! H_ij = <M_i, M_j> - (G^T M_i) A^-1 (G^T M_j)      g_i = <M_i, M> - (G^T M_i) . x
+//! ```
+//!
+//! damped (Levenberg, Marquardt) only after a step that went uphill.
+
+use glam::{DVec3, Vec3};
+use multiversion::multiversion;
+
+use super::cholesky::LANES;
+use super::feature::{Blend, FIELDS, PER_BLOCK};
+use super::rig::{Fixed, Rig};
+
+/// The iterations are at rest when no vertex moved by more than this share of the mesh's size in the last.
+pub const TOLERANCE: f64 = 1e-5;
+/// After so many iterations a frame is given up.
+const MOST_ITERATIONS: u32 = 60;
+/// Keeps the small system solvable where weights make no difference: states that are alike.
+const FLOOR: f64 = 1e-9;
+
+/// How a frame was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Posed {
+    /// Weights of the states without the rest; 1 shows a state itself.
+    pub weights: Vec<f64>,
+    /// Iterations made, all starts together.
+    pub iterations: u32,
+    /// How far the triangles are from the blend of the states: the root mean square over the area of how much a length
+    /// differs, 0 for a state itself, 0.1 for 10 %.
+    pub residual: f64,
+    /// Greatest movement of a vertex in the last iteration, cm.
+    pub step: f64,
+    /// Whether the iterations came to rest.
+    pub converged: bool,
+}
+
+/// Poses one rig frame after frame; each frame starts from the one before.
+#[derive(Debug)]
+pub struct Poser<'a> {
+    rig: &'a Rig,
+    /// Of the last frame and the one before it.
+    weights: [Option<Vec<f64>>; 2],
+    blend: Blend,
+    /// Solutions, per block of fields.
+    solution: Vec<Vec<[f64; LANES]>>,
+    /// What the fixed places add to the right-hand sides of the free ones.
+    shift: Vec<[f64; 3]>,
+    /// Places by row, from the centre.
+    x: Vec<[f64; 3]>,
+    pub(super) most_iterations: u32,
+}
+
+/// One descent.
+struct Descent {
+    weights: Vec<f64>,
+    energy: f64,
+    iterations: u32,
+    step: f64,
+    converged: bool,
+}
+
+/// The small system at some weights.
+struct Small {
+    energy: f64,
+    slope: [f64; FIELDS],
+    hessian: [[f64; FIELDS]; FIELDS],
+}
+
+impl<'a> Poser<'a> {
+    pub(super) fn new(rig: &'a Rig) -> Self {
+        let blend = rig.features.blend(rig.places.len());
+        Self {
+            rig,
+            weights: [None, None],
+            solution: blend.right.clone(),
+            blend,
+            shift: vec![[0.0; 3]; rig.unknowns()],
+            x: rig.places.iter().map(|p| p.to_array()).collect(),
+            most_iterations: MOST_ITERATIONS,
+        }
+    }
+
+    /// Forgets the frames so far: the next one is looked for from every state.
+    pub fn forget(&mut self) {
+        self.weights = [None, None];
+    }
+
+    /// Poses the mesh with its handles at `targets`, one per handle, and writes every vertex. Held vertices and handles
+    /// are met exactly. Without a frame before it, or when going on from there does not come to rest, the search starts
+    /// from every state and the best is taken.
+    ///
+    /// # Panics
+    /// When `targets` or `out` has the wrong length.
+    pub fn pose(&mut self, targets: &[Vec3], out: &mut [Vec3]) -> Posed {
+        assert_eq!((targets.len(), out.len()), (self.rig.handles(), self.rig.rest.len()));
+        self.fix(targets);
+        let mut iterations = 0;
+        let mut best = None;
+        if let Some(start) = self.warm() {
+            let descent = self.descend(start);
+            iterations += descent.iterations;
+            best = descent.converged.then_some(descent);
+        }
+        let best = best.unwrap_or_else(|| {
+            let states = self.rig.states;
+            let start = |i: usize| (0..states).map(|e| if e + 1 == i { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
+            let descents: Vec<Descent> = (0..=states).map(|i| self.descend(start(i))).collect();
+            iterations += descents.iter().map(|d| d.iterations).sum::<u32>();
+            let better = |a: &Descent, b: &Descent| b.converged.cmp(&a.converged).then(a.energy.total_cmp(&b.energy));
+            let last = descents.len() - 1;
+            let (at, best) =
+                descents.into_iter().enumerate().min_by(|a, b| better(&a.1, &b.1)).unwrap_or_else(|| unreachable!());
+            if at == last {
+                return best;
+            }
+            // The places are those of the last descent: go to the best once more.
+            let again = self.descend(best.weights);
+            iterations += again.iterations;
+            again
+        });
+        self.write(targets, out);
+        self.weights = [Some(best.weights.clone()), self.weights[0].take()];
+        let residual = best.energy.max(0.0).sqrt();
+        Posed { weights: best.weights, iterations, residual, step: best.step, converged: best.converged }
+    }
+
+    /// Where the last two frames lead.
+    fn warm(&self) -> Option<Vec<f64>> {
+        let [last, before] = &self.weights;
+        let last = last.as_ref()?;
+        Some(match before {
+            Some(before) => last.iter().zip(before).map(|(a, b)| 2.0 * a - b).collect(),
+            None => last.clone(),
+        })
+    }
+
+    /// Puts the fixed places where they belong, and what they add to the system.
+    fn fix(&mut self, targets: &[Vec3]) {
+        let free = self.rig.unknowns();
+        for (i, fixed) in self.rig.fixed.iter().enumerate() {
+            if let Fixed::Handle(h) = fixed {
+                self.x[free + i] = (targets[*h].as_dvec3() - self.rig.centre).to_array();
+            }
+        }
+        self.shift.fill([0.0; 3]);
+        for &(fixed, row, a) in &self.rig.coupling {
+            if let Some(to) = self.shift.get_mut(row as usize) {
+                let from = self.x[free + fixed as usize];
+                (0..3).for_each(|c| to[c] += a * from[c]);
+            }
+        }
+    }
+
+    /// From some weights down to where the energy is least.
+    fn descend(&mut self, start: Vec<f64>) -> Descent {
+        let limit = TOLERANCE * self.rig.size;
+        let mut damping = 0.0;
+        let mut weights = start;
+        // The last weights that went downhill, and their system.
+        let mut held: Option<(Vec<f64>, Small)> = None;
+        let mut step = f64::INFINITY;
+        for iterations in 1..=self.most_iterations {
+            let small = self.evaluate(&weights);
+            let above = |h: &Small| small.energy.is_nan() || small.energy > h.energy + 1e-12 * (1.0 + h.energy);
+            let uphill = held.as_ref().is_some_and(|(_, h)| above(h));
+            let (from, small) = match held.take() {
+                Some(before) if uphill => {
+                    damping = if damping == 0.0 { 1e-2 } else { 8.0 * damping };
+                    before
+                }
+                _ => {
+                    damping = if damping > 1e-3 { damping / 8.0 } else { 0.0 };
+                    (weights, small)
+                }
+            };
+            let delta = self.small_step(&small, damping);
+            if uphill {
+                // The fields are not those of `from`: only the weights can tell whether it still goes anywhere.
+                let size = delta.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+                if size < 1e-9 {
+                    let energy = self.evaluate(&from).energy;
+                    return Descent { weights: from, energy, iterations, step: 0.0, converged: true };
+                }
+            } else {
+                // A step that is short for its damping only says nothing.
+                let full = if damping > 0.0 { self.small_step(&small, 0.0) } else { delta.clone() };
+                step = self.movement(&full);
+                if step <= limit {
+                    self.advance(&full);
+                    let weights = from.iter().zip(&full).map(|(w, d)| w + d).collect();
+                    return Descent { weights, energy: small.energy, iterations, step, converged: true };
+                }
+            }
+            weights = from.iter().zip(&delta).map(|(w, d)| w + d).collect();
+            held = Some((from, small));
+        }
+        let energy = held.map_or(f64::INFINITY, |(_, s)| s.energy);
+        Descent { weights, energy, iterations: self.most_iterations, step, converged: false }
+    }
+
+    /// Solves for the places and their derivatives at some weights.
+    fn evaluate(&mut self, weights: &[f64]) -> Small {
+        let rig = self.rig;
+        let free = rig.unknowns();
+        rig.features.evaluate(weights, &mut self.blend);
+        let fields = rig.states + 1;
+        for (b, (solution, right)) in self.solution.iter_mut().zip(&self.blend.right).enumerate() {
+            solution[..free].copy_from_slice(&right[..free]);
+            if b == 0 {
+                for (to, shift) in solution.iter_mut().zip(&self.shift) {
+                    (0..3).for_each(|c| to[c] -= shift[c]);
+                }
+            }
+            rig.factor.solve(solution, 3 * (fields - b * PER_BLOCK).min(PER_BLOCK));
+        }
+        for (x, s) in self.x[..free].iter_mut().zip(&self.solution[0]) {
+            x.copy_from_slice(&s[..3]);
+        }
+        // Inner products of right-hand sides with places and with their derivatives.
+        let mut with_places = [0.0; FIELDS];
+        for (b, right) in self.blend.right.iter().enumerate() {
+            let sums = against_places(right, &self.x);
+            for (f, sum) in with_places[b * PER_BLOCK..fields].iter_mut().zip(sums.chunks_exact(3)) {
+                *f = sum.iter().sum();
+            }
+        }
+        let inner = &self.blend.inner;
+        let mut small = Small { energy: 0.0, slope: [0.0; FIELDS], hessian: [[0.0; FIELDS]; FIELDS] };
+        for e in 0..rig.states {
+            small.slope[e] = inner[e + 1][0] - with_places[e + 1];
+            for f in 0..=e {
+                let value = inner[e + 1][f + 1] - self.product(e + 1, f + 1);
+                small.hessian[e][f] = value;
+                small.hessian[f][e] = value;
+            }
+        }
+        // |M|^2 - 2 b.x + x.A x, where A x = b in the free rows.
+        let dot = |a: &[f64], x: &[f64; 3]| a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
+        let at_fixed: f64 = self.blend.right[0][free..].iter().zip(&self.x[free..]).map(|(b, x)| dot(&b[..3], x)).sum();
+        let pull = |&(fixed, row, a): &(u32, u32, f64)| a * dot(&self.x[free + fixed as usize], &self.x[row as usize]);
+        let pulled: f64 = rig.coupling.iter().map(pull).sum();
+        small.energy = inner[0][0] - with_places[0] - at_fixed + pulled;
+        small
+    }
+
+    /// The product of the right-hand side of one field with the solution of another, over the free rows.
+    fn product(&self, e: usize, f: usize) -> f64 {
+        let free = self.rig.unknowns();
+        let (a, b) = (3 * (e % PER_BLOCK), 3 * (f % PER_BLOCK));
+        let rows = self.blend.right[e / PER_BLOCK][..free].iter().zip(&self.solution[f / PER_BLOCK]);
+        rows.map(|(r, s)| r[a] * s[b] + r[a + 1] * s[b + 1] + r[a + 2] * s[b + 2]).sum()
+    }
+
+    /// The step of the small system: `(H + damping) d = -g` by Cholesky.
+    fn small_step(&self, small: &Small, damping: f64) -> Vec<f64> {
+        let n = self.rig.states;
+        let greatest = (0..n).map(|i| small.hessian[i][i]).fold(0.0, f64::max);
+        let mut l = small.hessian;
+        let mut d: Vec<f64> = small.slope[..n].iter().map(|g| -g).collect();
+        for (i, row) in l.iter_mut().enumerate().take(n) {
+            row[i] += damping * row[i].max(0.0) + (FLOOR + 1e-3 * damping) * greatest + f64::MIN_POSITIVE;
+        }
+        for i in 0..n {
+            for j in 0..=i {
+                let sum: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
+                let rest = l[i][j] - sum;
+                // Rounding may leave nothing of a direction that makes no difference.
+                l[i][j] =
+                    if i == j { rest.max(FLOOR * FLOOR * greatest + f64::MIN_POSITIVE).sqrt() } else { rest / l[j][j] };
+            }
+        }
+        for i in 0..n {
+            let sum: f64 = (0..i).map(|k| l[i][k] * d[k]).sum();
+            d[i] = (d[i] - sum) / l[i][i];
+        }
+        for i in (0..n).rev() {
+            let sum: f64 = (i + 1..n).map(|k| l[k][i] * d[k]).sum();
+            d[i] = (d[i] - sum) / l[i][i];
+        }
+        d
+    }
+
+    /// Movement of a row when the weights change.
+    fn moved(&self, row: usize, delta: &[f64]) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for (e, d) in delta.iter().enumerate() {
+            let at = 3 * ((e + 1) % PER_BLOCK);
+            let s = &self.solution[(e + 1) / PER_BLOCK][row];
+            sum += DVec3::new(s[at], s[at + 1], s[at + 2]) * *d;
+        }
+        sum
+    }
+
+    /// The greatest movement when the weights change, cm.
+    fn movement(&self, delta: &[f64]) -> f64 {
+        (0..self.rig.unknowns()).map(|r| self.moved(r, delta).length_squared()).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Moves the places along with the weights.
+    fn advance(&mut self, delta: &[f64]) {
+        for r in 0..self.rig.unknowns() {
+            let by = self.moved(r, delta).to_array();
+            (0..3).for_each(|c| self.x[r][c] += by[c]);
+        }
+    }
+
+    fn write(&self, targets: &[Vec3], out: &mut [Vec3]) {
+        let rig = self.rig;
+        let free = rig.unknowns();
+        for ((to, row), rest) in out.iter_mut().zip(&rig.row).zip(&rig.rest) {
+            *to = match row.map(|r| r as usize) {
+                None => *rest,
+                Some(r) if r < free => (DVec3::from_array(self.x[r]) + rig.centre).as_vec3(),
+                Some(r) => match rig.fixed[r - free] {
+                    Fixed::Held => *rest,
+                    Fixed::Handle(h) => targets[h],
+                },
+            };
+        }
+    }
+}
+
+#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
+fn against_places(right: &[[f64; LANES]], x: &[[f64; 3]]) -> [f64; LANES] {
+    let mut sums = [0.0; LANES];
+    for (r, x) in right.iter().zip(x) {
+        for k in 0..LANES {
+            sums[k] += r[k] * x[k % 3];
+        }
+    }
+    sums
+}
