@@ -86,6 +86,7 @@ fn scene() -> Scene {
         look: Look::default(),
         placement: Affine3A::IDENTITY,
         shown: Shown::default(),
+        overlay: Arc::default(),
     }
 }
 

@@ -51,8 +51,11 @@ pub fn clear_all(mesh: &Mesh, same: &[u32], body: &Solid, margin: f32, task: &Ta
     for round in 0..ROUNDS {
         task.check()?;
         task.progress("clear", round as f32 / ROUNDS as f32);
-        let own: Vec<Vec3> =
-            p.par_iter().enumerate().map(|(v, &at)| if same[v] as usize == v { push(at, margin) } else { Vec3::ZERO }).collect();
+        let own: Vec<Vec3> = p
+            .par_iter()
+            .enumerate()
+            .map(|(v, &at)| if same[v] as usize == v { push(at, margin) } else { Vec3::ZERO })
+            .collect();
         if round == 0 {
             let lengths = || own.iter().map(|d| d.length()).filter(|&d| d > 1e-4);
             dipped = lengths().count();

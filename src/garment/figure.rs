@@ -54,8 +54,7 @@ pub struct Figure {
 impl Figure {
     /// A torso with these girths (cm) at [`BUST`], [`WAIST`] and [`HIP`].
     pub fn new(bust: f32, waist: f32, hip: f32) -> Self {
-        let columns: Vec<Spline> =
-            (1..6).map(|c| Spline::new(ROWS.iter().map(|r| (-r[0], r[c])).collect())).collect();
+        let columns: Vec<Spline> = (1..6).map(|c| Spline::new(ROWS.iter().map(|r| (-r[0], r[c])).collect())).collect();
         let row = |y: f32| -> Row {
             let mut row = [y; 6];
             row[1..].iter_mut().zip(&columns).for_each(|(value, spline)| *value = spline.at(-y));

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::figure::{AXIS, BUST, Figure, HIP, Spline, WAIST};
+use super::figure::{AXIS, BUST, Figure, HIP, WAIST};
 use super::loft::Loft;
 use super::skirt::ring;
 use super::{Garment, Tape};
@@ -56,11 +56,24 @@ impl FormOptions {
         let last = rows.len() - 1;
         loft.cap("form", &rows[last], Vec3::new(0.0, rows[last][0].y, AXIS), false);
         if self.stand {
-            turned(&mut loft, &[(0.05, -9.3), (0.9, -9.5), (1.5, -10.2), (1.6, -11.0), (1.1, -11.8), (0.8, -12.2), (1.6, -12.4)]);
+            turned(
+                &mut loft,
+                &[(0.05, -9.3), (0.9, -9.5), (1.5, -10.2), (1.6, -11.0), (1.1, -11.8), (0.8, -12.2), (1.6, -12.4)],
+            );
             let foot = -157.0;
             turned(
                 &mut loft,
-                &[(1.5, -88.0), (1.5, -150.0), (2.6, -151.0), (2.8, -152.5), (6.0, -154.0), (14.0, -155.4), (15.5, -156.0), (15.8, foot), (0.05, foot)],
+                &[
+                    (1.5, -88.0),
+                    (1.5, -150.0),
+                    (2.6, -151.0),
+                    (2.8, -152.5),
+                    (6.0, -154.0),
+                    (14.0, -155.4),
+                    (15.5, -156.0),
+                    (15.8, foot),
+                    (0.05, foot),
+                ],
             );
         }
         let around = |name: &str, height: f32| Tape { name: name.into(), height, side: Side::Middle, parts: vec![] };

@@ -20,7 +20,8 @@ impl Loft {
         let mut down = 0.0;
         for (r, ring) in rings.iter().enumerate() {
             if r > 0 {
-                down += ring.iter().zip(&rings[r - 1]).map(|(a, b)| a.distance(*b)).sum::<f32>() / columns.max(1) as f32;
+                down +=
+                    ring.iter().zip(&rings[r - 1]).map(|(a, b)| a.distance(*b)).sum::<f32>() / columns.max(1) as f32;
             }
             for (c, &p) in ring.iter().enumerate() {
                 self.mesh.positions.push(p);

@@ -8,6 +8,7 @@ mod clear;
 mod figure;
 mod form;
 mod loft;
+mod ribbon;
 mod skirt;
 mod top;
 mod trousers;
@@ -20,6 +21,7 @@ use crate::geometry::{Group, Mesh};
 
 pub use clear::{Cleared, clear, clear_all};
 pub use form::FormOptions;
+pub use ribbon::ribbon;
 pub use skirt::SkirtOptions;
 pub use top::{DressOptions, ShirtOptions};
 pub use trousers::TrousersOptions;

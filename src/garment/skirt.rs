@@ -41,8 +41,10 @@ impl SkirtOptions {
         let figure = Figure::new(86.0, self.waist, self.hip);
         let top = WAIST + 0.5 * BAND;
         // The band: level cloth of its own, a little outside the skirt.
-        let band: Vec<Vec<Vec3>> =
-            [0.0, 0.15, 0.5, 0.85, 1.0].iter().map(|u| ring(|a| figure.place(WAIST, a, 0.0).with_y(top - BAND * u))).collect();
+        let band: Vec<Vec<Vec3>> = [0.0, 0.15, 0.5, 0.85, 1.0]
+            .iter()
+            .map(|u| ring(|a| figure.place(WAIST, a, 0.0).with_y(top - BAND * u)))
+            .collect();
         let inner = turned_in(&band[1], &band[0], 1.5);
         let mut rows: Vec<Vec<Vec3>> = inner.into_iter().rev().collect();
         rows.extend(band.into_iter().skip(1));
@@ -81,7 +83,8 @@ pub fn drape(figure: &Figure, from: f32, length: f32, cut: &SkirtOptions, inside
     // How much of the way from close cloth to the hem's circle, by height. It leaves the figure above the hip.
     let leave = from - 0.12 * length.min(40.0);
     let free = |y: f32| trig::pow(((leave - y) / (leave - hem)).clamp(0.0, 1.0), 1.15);
-    let folds = |y: f32| trig::smoothstep(0.0, 1.0, ((from - 3.0 - y) / (from - 3.0 - hem)).clamp(0.0, 1.0)) * cut.fold_depth;
+    let folds =
+        |y: f32| trig::smoothstep(0.0, 1.0, ((from - 3.0 - y) / (from - 3.0 - hem)).clamp(0.0, 1.0)) * cut.fold_depth;
     let wave = |a: f32| {
         if cut.folds == 0 {
             return 0.0;
@@ -109,8 +112,7 @@ pub fn drape(figure: &Figure, from: f32, length: f32, cut: &SkirtOptions, inside
         wide += (cut.hem - tape(&shape(hem, wide))) / TAU;
         wide = wide.max(1.0);
     }
-    let mut rings: Vec<Vec<Vec3>> =
-        (0..=rows).map(|r| shape(from - length * r as f32 / rows as f32, wide)).collect();
+    let mut rings: Vec<Vec<Vec3>> = (0..=rows).map(|r| shape(from - length * r as f32 / rows as f32, wide)).collect();
     let hem_rings = turned_in(&rings[rows - 1], &rings[rows], 2.0);
     rings.extend(hem_rings.into_iter().skip(1));
     rings

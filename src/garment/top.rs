@@ -115,7 +115,8 @@ const PARTS: [(&str, f32); 3] = [("bust", -48.0), ("waist", -67.0), ("hip", f32:
 fn torso(loft: &mut Loft, figure: &Figure, neckline: f32, bottom: f32, sleeve: Option<(f32, f32)>, has_hem: bool) {
     // Rows: evenly to the armpit with the armhole's ends on rows, then evenly to the hem.
     let hole_rows = (8, ROWS);
-    let mut heights: Vec<f32> = (0..hole_rows.0).map(|r| NECK + (HOLE.0 - NECK) * r as f32 / hole_rows.0 as f32).collect();
+    let mut heights: Vec<f32> =
+        (0..hole_rows.0).map(|r| NECK + (HOLE.0 - NECK) * r as f32 / hole_rows.0 as f32).collect();
     let down = (hole_rows.1 - hole_rows.0) as f32;
     heights.extend((0..hole_rows.1 - hole_rows.0).map(|r| HOLE.0 + (HOLE.1 - HOLE.0) * r as f32 / down));
     let below = ((HOLE.1 - bottom) / 0.9).ceil().max(1.0) as usize;
@@ -156,7 +157,11 @@ fn torso(loft: &mut Loft, figure: &Figure, neckline: f32, bottom: f32, sleeve: O
     }
     if has_hem {
         let n = rows.len();
-        loft.sheet(if bottom < PARTS[1].1 { "hip" } else { "waist" }, &turned_in(&rows[n - 2], &rows[n - 1], 1.6), |_, _| true);
+        loft.sheet(
+            if bottom < PARTS[1].1 { "hip" } else { "waist" },
+            &turned_in(&rows[n - 2], &rows[n - 1], 1.6),
+            |_, _| true,
+        );
     }
     // A narrow band around the neck.
     let up: Vec<Vec3> = rows[0].iter().zip(&rows[1]).map(|(a, b)| *a + (*a - *b).normalize_or_zero() * 0.9).collect();
@@ -195,7 +200,11 @@ fn rounded(mut rows: Vec<Vec<Vec3>>, (top, bottom): (usize, usize), middles: &[u
                 let u = off.abs() as f32;
                 // Columns of the hole are drawn together, those beside it drawn after.
                 let inside = HALF_HOLE as f32;
-                let to = if u <= inside { u * want } else { inside * want + (u - inside) * (reach + inside * (1.0 - want)) / reach };
+                let to = if u <= inside {
+                    u * want
+                } else {
+                    inside * want + (u - inside) * (reach + inside * (1.0 - want)) / reach
+                };
                 let to = u + (to - u) * fade;
                 let at = m as f32 + to * (off.signum() as f32);
                 let (lo, part) = (at.floor() as usize, at - at.floor());

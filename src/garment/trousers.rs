@@ -39,19 +39,23 @@ impl TrousersOptions {
         let figure = Figure::new(86.0, self.waist, self.hip);
         let mut loft = Loft::default();
         let top = WAIST + 0.5 * BAND;
-        let band: Vec<Vec<Vec3>> =
-            [0.0, 0.15, 0.5, 0.85, 1.0].iter().map(|u| ring(|a| figure.place(WAIST, a, 0.0).with_y(top - BAND * u))).collect();
+        let band: Vec<Vec<Vec3>> = [0.0, 0.15, 0.5, 0.85, 1.0]
+            .iter()
+            .map(|u| ring(|a| figure.place(WAIST, a, 0.0).with_y(top - BAND * u)))
+            .collect();
         let mut rows: Vec<Vec<Vec3>> = turned_in(&band[1], &band[0], 1.5).into_iter().rev().collect();
         rows.extend(band.into_iter().skip(1));
         loft.sheet("waistband", &rows, |_, _| true);
         let from = top - BAND;
         let count = 30;
-        let hips: Vec<Vec<Vec3>> = (0..=count)
+        let sewn = rows[rows.len() - 1].clone();
+        let mut hips: Vec<Vec<Vec3>> = (0..=count)
             .map(|r| {
                 let y = from + (FORK - from) * r as f32 / count as f32;
-                ring(|a| figure.place(y, a, if r == 0 { -0.1 } else { 0.0 }))
+                ring(|a| figure.place(y, a, 0.0))
             })
             .collect();
+        hips[0] = sewn;
         loft.sheet("hip", &hips, |_, _| true);
         let fork = &hips[count];
         for sign in [1.0, -1.0] {
@@ -65,8 +69,7 @@ impl TrousersOptions {
             parts: parts.iter().map(ToString::to_string).collect(),
         };
         let trunk = ["waistband", "hip"];
-        let mut tapes =
-            vec![around("waist", WAIST, Side::Middle, &trunk), around("hip", HIP, Side::Middle, &trunk)];
+        let mut tapes = vec![around("waist", WAIST, Side::Middle, &trunk), around("hip", HIP, Side::Middle, &trunk)];
         if self.length > 60.0 {
             tapes.push(around("left_knee", -111.0, Side::Middle, &["left_leg"]));
             tapes.push(around("right_knee", -111.0, Side::Middle, &["right_leg"]));
@@ -117,8 +120,7 @@ impl TrousersOptions {
                     let begin = if sign > 0.0 { 0.0 } else { std::f32::consts::PI };
                     let a = begin + a - shift;
                     let drape = 0.25 * trig::cos(0.35 * y + 2.0 * a) * trig::smoothstep(0.3, 1.0, t);
-                    let round = middle
-                        + Vec3::new(trig::sin(a), 0.0, trig::cos(a) * 1.04) * (radius + drape);
+                    let round = middle + Vec3::new(trig::sin(a), 0.0, trig::cos(a) * 1.04) * (radius + drape);
                     edge[i].with_y(edge[i].y - FORK + y).lerp(round, blend)
                 })
                 .collect();

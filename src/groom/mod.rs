@@ -23,7 +23,7 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-pub use clear::{count_inside, is_inside};
+pub use clear::{count_inside, is_inside, keep_out};
 pub use domain::{Curl, Directional, Domain, Gather, Measure, NaturalOptions, Turn, Wave};
 pub use error::GroomError;
 pub use fill::{Fill, FillOptions, Separated, fill};
@@ -32,3 +32,4 @@ pub use guides::{GuideOptions, Guides};
 pub use natural::{Deform, DeformOptions, Natural, NaturalQueue, Shape, deform, fade, ramp, scale};
 pub use queue::{Queue, QueueOptions, Stage, Walk};
 pub use region::BoxOptions;
+pub use step::Body;

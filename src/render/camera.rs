@@ -105,6 +105,7 @@ pub fn frame(scene: &Scene, views: &[Mat3]) -> Framing {
     let mut points: Vec<Vec3> = Vec::new();
     for part in &scene.parts {
         match &part.body {
+            Body::Mesh(mesh, _) if !part.is_head() => points.extend(mesh.positions.iter().filter(|p| p.is_finite())),
             Body::Mesh(mesh, _) => {
                 let top = mesh.positions.iter().filter(|p| p.is_finite()).map(|p| p.y).fold(0.0, f32::max);
                 let (floor, neck) = (-1.5 * top, -0.9 * top);
@@ -125,6 +126,10 @@ pub fn frame(scene: &Scene, views: &[Mat3]) -> Framing {
                 }
             }
         }
+    }
+    if scene.look.debug {
+        let overlay = &scene.overlay;
+        points.extend(overlay.lines.iter().chain(&overlay.thin).flat_map(|l| &l.points).filter(|p| p.is_finite()));
     }
     if points.is_empty() {
         points.extend([Vec3::splat(-10.0), Vec3::splat(10.0)]);

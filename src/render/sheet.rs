@@ -354,6 +354,8 @@ impl Stage {
         for (bundle, colours) in bundles.iter_mut().zip(&flat) {
             bundle.ink = Ink::Flat(colours);
         }
+        // The cut through a bust fades; a garment has its own end.
+        let is_bust = scene.parts.iter().all(|p| !matches!(p.body, Body::Mesh(..)) || p.is_head());
         let canvas = Canvas {
             camera: &fine,
             supersample: ss,
@@ -361,7 +363,7 @@ impl Stage {
             layer: &layer,
             solid: if drawing.is_some() { 0.45 } else { 1.0 },
             background: paper.to_linear(),
-            fade: 0.10,
+            fade: if is_bust { 0.10 } else { 0.0 },
         };
         task.progress("hair", 0.4);
         let pixels = raster::draw(&bundles, &canvas, task)?;

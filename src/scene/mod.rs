@@ -34,6 +34,8 @@ pub struct Scene {
     pub placement: Affine3A,
     /// Which frames the pictures show, when anything moves.
     pub shown: Shown,
+    /// What the debug view draws besides what hair brings with it: lattices, pins, tapes.
+    pub overlay: Arc<Overlay>,
 }
 
 /// One thing in a scene.
@@ -71,6 +73,13 @@ pub struct Hair {
     pub material: HairMaterial,
     /// Domains, partings, roots: what the debug view draws.
     pub overlay: Arc<Overlay>,
+}
+
+impl Part {
+    /// True for the surface of a head: what goes on below the picture is left out of it.
+    pub fn is_head(&self) -> bool {
+        matches!(self.body, Body::Mesh(..)) && (self.name == "head" || self.name.starts_with("head_"))
+    }
 }
 
 impl Scene {

@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::deform::Fitted;
+use crate::garment::Garment;
 use crate::geometry::{Root, Strands};
 use crate::head::Head;
 use crate::math::Digest;
@@ -30,6 +32,18 @@ impl Kept for Strands {
 impl Kept for Head {
     fn bytes(&self) -> usize {
         Self::bytes(self)
+    }
+}
+
+impl Kept for Garment {
+    fn bytes(&self) -> usize {
+        self.mesh.positions.len() * 32 + self.mesh.triangles.len() * 16
+    }
+}
+
+impl Kept for Fitted {
+    fn bytes(&self) -> usize {
+        self.mesh.positions.len() * 32 + self.mesh.triangles.len() * 16 + self.lattices.len() * 2048
     }
 }
 

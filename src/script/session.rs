@@ -83,6 +83,8 @@ pub struct Session {
     pub timings: RefCell<Vec<Timing>>,
     /// Heads made so far, by what was asked for.
     pub heads: RefCell<BTreeMap<String, Arc<Head>>>,
+    /// Heads whose hair is carried to another one at the end: (from, to).
+    pub carries: RefCell<Vec<(Arc<Head>, Arc<Head>)>>,
 }
 
 /// The session of a VM.
@@ -108,6 +110,7 @@ impl Session {
             parameters: RefCell::default(),
             timings: RefCell::default(),
             heads: RefCell::default(),
+            carries: RefCell::default(),
         }
     }
 

@@ -144,7 +144,7 @@ pub fn functions() -> Vec<Entry> {
 
 /// Tufts and their material.
 pub fn nouns() -> Vec<Noun> {
-    let methods = vec![
+    let mut methods = vec![
         Entry::positional::<UnionFields>("Tufts:union", "Tufts", union),
         Entry::plain("Tufts:mirrored", "All tufts on the head's other side.", "Tufts", mirrored),
         Entry::table::<RotatedFields>("Tufts:rotated", "Tufts", rotated),
@@ -160,6 +160,7 @@ pub fn nouns() -> Vec<Noun> {
         )
         .sealed("the table of figures"),
     ];
+    methods.extend(super::deform::tufts_methods());
     let getters = vec![Getter {
         name: "count",
         doc: "How many tufts.",
@@ -302,7 +303,7 @@ pub fn tuft_error(call: &Call, points: &str, error: &TuftError) -> Raised {
 }
 
 /// Looks for tufts that run through the head: lifts them out when asked, warns of the rest.
-fn settle(call: &Call, mut tufts: Tufts, head: &Head, lifts: bool, allowed: f32) -> Result<Tufts> {
+pub fn settle(call: &Call, mut tufts: Tufts, head: &Head, lifts: bool, allowed: f32) -> Result<Tufts> {
     let (ground, options) = (ground(head), DipOptions { allowed });
     if lifts {
         let lifted: std::result::Result<Vec<Tuft>, TuftError> =
