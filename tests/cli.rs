@@ -181,6 +181,42 @@ fn parameters_are_listed() {
 }
 
 #[test]
+fn parameters_are_listed_as_they_are_declared() {
+    let dir = folder(
+        "local p = coif.params { width = 3, length = { 45, doc = 'a = 1, apple = 2' },\n  apple = true, a = 1 }\n\
+         local q = coif.params { first = 1 }\nreturn coif.scene { coif.head() }",
+    );
+    let output = coif(dir.path(), &["params", "style.lua", "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let names: Vec<_> = json.as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["width", "length", "apple", "a", "first"]);
+}
+
+#[test]
+fn what_needs_too_much_is_refused_with_the_limit_to_raise() {
+    let dir = folder(SCRIPT);
+    for (limit, wrong) in [
+        (["--points-limit", "100"], "the limit is 100"),
+        (["--triangles-limit", "1k"], "the limit is 1,000"),
+        (["--memory-limit", "6.1MB"], "of memory"),
+    ] {
+        let output = coif(dir.path(), &[&["run", "style.lua"], &limit[..]].concat());
+        let text = stderr(&output);
+        assert_eq!(code(&output), 1, "{limit:?}: {text}");
+        assert!(text.contains(wrong) && text.contains(&format!("raise it: `{} ", limit[0])), "{limit:?}: {text}");
+        assert!(text.contains("style.lua:"), "{text}");
+        assert_eq!(names(dir.path()), ["style.lua"]);
+    }
+    for command in ["run", "watch", "params", "sheet", "test", "diff"] {
+        let text = String::from_utf8(coif(dir.path(), &[command, "--help"]).stdout).unwrap();
+        for option in ["--time-limit", "--memory-limit", "--points-limit", "--triangles-limit"] {
+            assert!(text.contains(option), "{command} has no {option}");
+        }
+    }
+    assert_eq!(code(&coif(dir.path(), &["run", "style.lua", "--points-limit", "many"])), 2);
+}
+
+#[test]
 fn another_head_takes_the_place() {
     let dir = folder(SCRIPT);
     let missing = coif(dir.path(), &["run", "style.lua", "--head", "elsewhere/anna.obj"]);

@@ -3,11 +3,13 @@
 mod load_files;
 
 use coif::geometry::Mesh;
-use coif::head::load::{Axis, FileBytes, LoadError, LoadOptions, NoSiblings, Unit, load};
+use coif::head::load::{Axis, FileBytes, LoadError, LoadOptions, NoSiblings, Unit, load, load_until};
 use coif::math::rng::Key;
-use coif::task::Warned;
+use coif::task::{Task, Warned};
 use glam::{Vec2, Vec3};
 use load_files::{CUBE, Glb, head_glb, skinned_glb};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn options() -> LoadOptions {
     LoadOptions::default()
@@ -462,6 +464,57 @@ fn a_small_file_cannot_unfold_without_end() {
 }
 
 /// A key's choice of one of `n`.
+/// Cancels at the given look at the task; how many looks there were.
+fn polled(at: usize, work: impl FnOnce(&Task) -> bool) -> (usize, bool) {
+    let (task, count) = (Task::new(), Arc::new(AtomicUsize::new(0)));
+    let (own, counted) = (task.clone(), Arc::clone(&count));
+    let task = task.with_polls(move || {
+        if counted.fetch_add(1, Ordering::SeqCst) + 1 == at {
+            own.cancel();
+        }
+    });
+    let is_cancelled = work(&task);
+    (count.load(Ordering::SeqCst), is_cancelled)
+}
+
+#[test]
+fn loading_looks_at_its_task_often_and_stops_at_once() {
+    // A sheet of 200 x 200 squares in bumps: 40,000 vertices and as many faces, as OBJ.
+    let n = 200;
+    let mut text = String::new();
+    for i in 0..n * n {
+        text += &format!("v {} {} {}\n", i % n, i / n, (i * 7) % 5);
+    }
+    for i in (0..n * n).filter(|i| i % n + 1 < n && i / n + 1 < n) {
+        text += &format!("f {} {} {} {}\n", i + 1, i + 2, i + n + 2, i + n + 1);
+    }
+    let objects = [("a.obj", text.into_bytes(), 40), ("a.glb", head_glb().bytes(), 6)];
+    for (name, bytes, least) in objects {
+        let load = |task: &Task| match load_until(&FileBytes { name, bytes: &bytes }, &options(), &NoSiblings, task) {
+            Err(LoadError::Cancelled(_)) => true,
+            Err(e) => panic!("{name}: {e}"),
+            Ok(_) => false,
+        };
+        let (all, is_cancelled) = polled(usize::MAX, load);
+        assert!(!is_cancelled && all >= least, "{name}: only {all} looks at the task");
+        for at in (1..=all).step_by((all / 12).max(1)) {
+            let (count, is_cancelled) = polled(at, load);
+            // Once more, to tell a cancelled text from a bad one.
+            assert!(is_cancelled && count <= at + 1, "{name}: {count} looks after the cancelling at {at}");
+        }
+    }
+    let egg = coif::head::mannequin::mesh(coif::head::mannequin::Style::Cartoon);
+    let head = |task: &Task| {
+        let made = coif::head::Head::from_mesh_until(egg.clone(), "egg", &std::collections::BTreeMap::new(), task);
+        matches!(made, Err(coif::head::HeadError::Cancelled(_)))
+    };
+    let (all, is_cancelled) = polled(usize::MAX, head);
+    assert!(!is_cancelled && all >= 6, "only {all} looks at the task");
+    for at in 1..=all {
+        assert_eq!(polled(at, head), (at, true));
+    }
+}
+
 fn pick(key: Key, n: usize) -> usize {
     (key.bits() % n.max(1) as u64) as usize
 }

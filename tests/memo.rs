@@ -185,6 +185,56 @@ fn a_head_is_known_by_the_content_of_its_file() {
     assert_eq!(go("a.obj", &format!("# a remark\n{thick}")), (made, hit));
 }
 
+const TUFTS: &str = r##"-- Stylised hair, some of it too deep.
+local head = coif.head { style = "cartoon" }
+local function at(azimuth, height) return { azimuth = azimuth, elevation = 60, height = height } end
+local a = coif.tuft { stroke = { at(-40, 0), at(-40, 3), at(-60, 4) }, diameter = 3, peak = 30, material = "#604020" }
+local b = coif.tuft { stroke = { at(40, 0), at(40, 0.1), at(90, 0.1) }, diameter = 3, peak = 30 }
+local all = coif.fill { a, b, around = 30, jitter = 0.5 }
+local cap = coif.cap { material = "#302010" }
+return coif.scene { head, cap, all, shading = "toon", views = { "front" } }
+"##;
+
+#[test]
+fn tufts_their_fills_and_caps_are_kept() {
+    let memo = Arc::default();
+    let computed = |outcome: &Outcome| {
+        let steps: Vec<_> = outcome.timings.iter().filter(|t| t.origin.is_some()).collect();
+        let names: Vec<_> = steps.iter().map(|t| &*t.what).collect();
+        assert_eq!(names, ["coif.tuft", "coif.tuft", "coif.fill", "coif.cap"], "every step says where it is from");
+        let computed = steps.iter().filter(|t| t.origin == Some(Origin::Computed));
+        computed.map(|t| format!("{} {}", t.what, t.source)).collect::<Vec<_>>()
+    };
+    let edit = |from: &str, to: &str| {
+        assert_eq!(TUFTS.matches(from).count(), 1, "`{from}`");
+        TUFTS.replace(from, to)
+    };
+    let first = script(TUFTS, &memo);
+    assert_eq!(computed(&first).len(), 4);
+    let same = script(TUFTS, &memo);
+    assert_eq!(computed(&same), [""; 0]);
+    // The warnings of what lies too deep are told again, in their places, and the tufts are the same.
+    assert!(!first.diagnostics.is_empty() && first.diagnostics == same.diagnostics, "{:?}", first.diagnostics);
+    let tufts = |o: &Outcome| o.scene.as_ref().unwrap().locks().map(|(_, l)| l.tufts.tufts.clone()).collect::<Vec<_>>();
+    assert_eq!(tufts(&first), tufts(&same));
+    let moved = script(&format!("-- one line more\n{TUFTS}"), &memo);
+    assert_eq!(computed(&moved), [""; 0]);
+    let lines = |o: &Outcome| o.diagnostics.iter().map(|d| d.place.as_ref().map(|p| p.line)).collect::<Vec<_>>();
+    let later: Vec<_> = lines(&first).into_iter().map(|l| l.map(|l| l + 1)).collect();
+    assert_eq!(lines(&moved), later);
+    let sources = |o: &Outcome| o.scene.as_ref().unwrap().locks().nth(1).unwrap().1.tufts.sources.clone();
+    assert_eq!((&*sources(&first)[0], &*sources(&moved)[0]), ("a.lua:4", "a.lua:5"));
+    // A look makes nothing anew; a shape what it is the shape of, and what is made of it.
+    assert_eq!(computed(&script(&edit("#302010", "#403020"), &memo)), [""; 0]);
+    assert_eq!(computed(&script(&edit("shading = \"toon\", ", ""), &memo)), [""; 0]);
+    assert_eq!(computed(&script(&edit("jitter = 0.5", "jitter = 0.7"), &memo)), ["coif.fill a.lua:6"]);
+    let wider = script(&edit("at(-60, 4) }, diameter = 3", "at(-60, 4) }, diameter = 4"), &memo);
+    assert_eq!(computed(&wider), ["coif.tuft a.lua:4", "coif.fill a.lua:6"]);
+    // What is kept is what would be made.
+    let fresh = script(TUFTS, &Arc::new(Memo::new(0)));
+    assert_eq!(tufts(&script(TUFTS, &memo)), tufts(&fresh));
+}
+
 /// Runs a script with files in a folder of its own.
 fn workbench(text: &str, memo: &Arc<Memo>) -> (Report, Vec<Vec<u8>>) {
     let out = tempfile::tempdir().unwrap();

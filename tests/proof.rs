@@ -93,7 +93,7 @@ fn every_cell_is_what_a_run_draws() {
     let dir = folder(&[("style.lua", STYLE)]);
     let vary = ["--vary", "length=2..6:2", "--vary", "seed=0..1", "--set", "count=20"];
     let (code, _, err) =
-        coif(dir.path(), &[&["sheet", "style.lua", "--size", "64", "--view", "left"], &vary[..]].concat());
+        coif(dir.path(), &[&["sheet", "style.lua", "--size", "64", "--view", "left", "--fit"], &vary[..]].concat());
     assert_eq!(code, 0, "{err}");
     assert_eq!(names(&dir.path().join("out")), ["style.sheet.png"]);
     let sheet = picture(dir.path().join("out/style.sheet.png"));
@@ -112,6 +112,53 @@ fn every_cell_is_what_a_run_draws() {
     // The first goes across, the second down.
     assert!(places.is_sorted() && places.windows(2).all(|w| w[0] != w[1]), "{places:?}");
     assert!(places[0].0 == places[2].0 && places[3].0 > places[2].0 && places[3].1 == places[0].1, "{places:?}");
+}
+
+#[test]
+fn all_cells_share_one_scale_unless_they_are_fitted() {
+    // Only a plate of skin grows: the head in every cell must be as large and in the same place.
+    let style = r##"
+local p = coif.params { length = 4 }
+local head = coif.head()
+local hair = head:scalp():guides { count = 3, length = p.length, step = 1 }:grow {}
+return coif.scene { head, hair, views = { "front" } }
+"##;
+    let dir = folder(&[("style.lua", style)]);
+    let sheet = |more: &[&str]| {
+        let vary = ["sheet", "style.lua", "--size", "64", "--vary", "length=4,60"];
+        let (code, _, err) = coif(dir.path(), &[&vary[..], more].concat());
+        assert_eq!(code, 0, "{err}");
+        picture(dir.path().join("out/style.sheet.png"))
+    };
+    // Pixels of skin in each half.
+    let skin = |p: &Picture| {
+        let mut count = [0_usize; 2];
+        for (i, c) in p.pixels.chunks_exact(3).enumerate() {
+            let half = usize::from(i as u32 % p.width >= p.width / 2);
+            count[half] += usize::from(i32::from(c[0]) - i32::from(c[2]) > 15);
+        }
+        count
+    };
+    let ([a, b], [c, d]) = (skin(&sheet(&[])), skin(&sheet(&["--fit"])));
+    assert!(a > 20 && a.abs_diff(b) * 5 < a, "one scale: {a} and {b} pixels of skin");
+    assert!(c > 3 * d, "fitted: {c} and {d} pixels of skin");
+}
+
+#[test]
+fn a_parameter_named_seed_is_not_guessed_at() {
+    let style = "local p = coif.params { seed = 1 }\nreturn coif.scene { coif.head(), views = { 'front' } }";
+    let test = "coif.test('a', function(t) local s = t:run 'style.lua' { seed = 2 }; t:equal(s.head.name, 'head') end)\n\
+                coif.test('b', function(t) local s = t:run 'plain.lua' { width = 'x' }; t:equal(s.head.name, 'head') end)";
+    let plain = "local p = coif.params { width = 1 }\nreturn coif.scene { coif.head() }";
+    let dir = folder(&[("style.lua", style), ("plain.lua", plain), ("a_test.lua", test)]);
+    let (code, _, err) = coif(dir.path(), &["sheet", "style.lua", "--vary", "seed=1..2"]);
+    assert!(code == 1 && err.contains("`seed` is the seed of the run") && err.contains("another name"), "{err}");
+    // Set by its own name it is the parameter, as `--seed` is the run's.
+    let (code, out, err) = coif(dir.path(), &["params", "style.lua", "--set", "seed=7", "--seed", "3"]);
+    assert!(code == 0 && out.starts_with("seed = 7"), "{out}{err}");
+    let (code, _, err) = coif(dir.path(), &["test", "."]);
+    assert!(code == 1 && err.contains("`seed` is the seed of the run"), "{err}");
+    assert!(err.contains("`width` in the table of parameters") && !err.contains("--set"), "{err}");
 }
 
 #[test]

@@ -11,12 +11,12 @@ local form = coif.garment.form {
 local size = { bust = p.bust + 3, waist = p.waist + 3, hip = p.hip + 4 }
 
 local shirt = coif.garment.shirt {
-  bust = size.bust, waist = size.waist, hip = size.hip, length = 44, colour = "#e8e4da",
+  bust = size.bust, waist = size.waist + 2, hip = size.hip, length = 41, colour = "#e8e4da",
 }
 local skirt    = coif.garment.skirt { waist = size.waist, hip = size.hip, hem = 165, colour = "#39466b" }
 local dress    = coif.garment.dress { bust = size.bust, waist = size.waist, hip = size.hip, colour = "#8c2f39" }
 local trousers = coif.garment.trousers { waist = size.waist, hip = size.hip, colour = "#4a4f45" }
-local tee      = coif.garment.shirt { bust = size.bust, waist = size.waist + 2, hip = size.hip, sleeves = 14, neckline = 7, colour = "#c9a23f" }
+local tee      = coif.garment.shirt { bust = size.bust, waist = size.waist + 4, hip = size.hip + 8, length = 56, sleeves = 14, neckline = 7, colour = "#c9a23f" }
 
 -- each over a form of its own, pushed out where it would dip in
 local scene = {}

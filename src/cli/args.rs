@@ -10,6 +10,7 @@ use super::show::Show;
 use crate::export::StrandForm;
 use crate::head::load::Unit;
 use crate::scene::{Background, View};
+use crate::script::{Limits, limits};
 
 /// Hairstyles that are written: runs a Lua script, draws its picture, exports its hair.
 #[derive(Debug, Parser)]
@@ -70,12 +71,35 @@ pub struct ScriptArguments {
     /// Let the script read below this folder too, besides its own; may be repeated
     #[arg(long, value_name = "DIR")]
     pub allow: Vec<PathBuf>,
-    /// Stop the script after this time
-    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
-    pub time_limit: Duration,
+    #[command(flatten)]
+    pub limits: LimitArguments,
     /// Threads to use; all of the machine's by default. The result does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+}
+
+/// How much a script may take, for every command that runs one.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct LimitArguments {
+    /// Stop a script after this time
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
+    pub time_limit: Duration,
+    /// Refuse what needs more memory for its geometry
+    #[arg(long, value_name = "SIZE", default_value = "4GB", value_parser = amount)]
+    pub memory_limit: u64,
+    /// Refuse strands with more points than this, all together
+    #[arg(long, value_name = "N", default_value = "200M", value_parser = amount)]
+    pub points_limit: u64,
+    /// Refuse heads and tufts with more triangles than this, all together
+    #[arg(long, value_name = "N", default_value = "20M", value_parser = amount)]
+    pub triangles_limit: u64,
+}
+
+impl LimitArguments {
+    /// The limits other than time.
+    pub fn limits(&self) -> Limits {
+        Limits { memory: self.memory_limit, points: self.points_limit, triangles: self.triangles_limit }
+    }
 }
 
 /// `coif run`.
@@ -107,7 +131,7 @@ pub struct RunArguments {
     /// Farthest that a strand in the GLB may lie from its true course
     #[arg(long, value_name = "CM", default_value_t = 0.1, value_parser = tolerance)]
     pub tolerance: f32,
-    /// Bring all tufts together within this many triangles; rings and sides go first where it shows least
+    /// Bring all stylised hair (tufts, caps, buns, rings) within this many triangles, less first where it shows least
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub triangles: Option<u32>,
     /// Print one JSON object on standard output: counts per part, times per stage, files
@@ -132,6 +156,9 @@ pub struct WatchArguments {
     /// Look at the files regularly, for file systems that tell nothing (network, containers)
     #[arg(long)]
     pub poll: bool,
+    /// Wait for the whole picture, without a draft before it
+    #[arg(long)]
+    pub no_draft: bool,
     /// Print one JSON object per event on standard output, and nothing else
     #[arg(long, conflicts_with = "show")]
     pub json: bool,
@@ -177,6 +204,10 @@ pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     } else {
         Err("it takes more than 0 seconds".to_owned())
     }
+}
+
+fn amount(text: &str) -> Result<u64, String> {
+    limits::count(text).ok_or_else(|| "write a number, as in 500k, 40M or 1.5G".to_owned())
 }
 
 fn tolerance(text: &str) -> Result<f32, String> {

@@ -170,7 +170,8 @@ fn script_options(arguments: &ScriptArguments) -> script::Options {
         head: arguments.head.clone(),
         head_unit: arguments.head_unit,
         allow: arguments.allow.clone(),
-        time_limit: arguments.time_limit,
+        time_limit: arguments.limits.time_limit,
+        limits: arguments.limits.limits(),
         ..script::Options::new(&arguments.script)
     }
 }

@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 use clap::Args;
 
-use super::args::{ScriptArguments, background, seconds, view};
+use super::args::{LimitArguments, ScriptArguments, background, view};
 use super::{CANCELLED, DONE, SCRIPT, USAGE, WRITE, barrier, is_styled, print, proof_text, say, script_options, tell};
 use crate::render::SheetOptions;
 use crate::scene::{Background, View};
@@ -34,6 +33,9 @@ pub struct SheetArguments {
     /// Width of one picture in pixels
     #[arg(long, value_name = "PX", default_value_t = 280, value_parser = clap::value_parser!(u32).range(16..=4096))]
     pub size: u32,
+    /// Fit every picture to its own style, as `coif run` does, instead of showing all at one scale
+    #[arg(long)]
+    pub fit: bool,
     /// Background, instead of the script's [white, dark]
     #[arg(long, value_name = "COLOUR", value_parser = background)]
     pub background: Option<Background>,
@@ -65,9 +67,8 @@ pub struct TestArguments {
     /// Let tests and styles read below this folder too; may be repeated
     #[arg(long, value_name = "DIR")]
     pub allow: Vec<PathBuf>,
-    /// Stop a test after this time
-    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
-    pub time_limit: Duration,
+    #[command(flatten)]
+    pub limits: LimitArguments,
     /// Threads to use; all of the machine's by default. The result does not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -133,6 +134,7 @@ pub fn command_sheet(arguments: &SheetArguments) -> u8 {
         view: arguments.view,
         turntable: arguments.turntable,
         sheet: cell(arguments.size),
+        fit: arguments.fit,
         background: arguments.background,
         out: arguments.out.clone(),
     };
@@ -174,8 +176,12 @@ pub fn command_sheet(arguments: &SheetArguments) -> u8 {
 
 /// Runs `coif test`.
 pub fn command_test(arguments: &TestArguments) -> u8 {
-    let script =
-        Options { allow: arguments.allow.clone(), time_limit: arguments.time_limit, ..Options::new(&arguments.path) };
+    let script = Options {
+        allow: arguments.allow.clone(),
+        time_limit: arguments.limits.time_limit,
+        limits: arguments.limits.limits(),
+        ..Options::new(&arguments.path)
+    };
     let options = TestOptions {
         path: arguments.path.clone(),
         filter: arguments.filter.clone(),

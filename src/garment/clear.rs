@@ -41,7 +41,8 @@ pub fn clear_all(mesh: &Mesh, same: &[u32], body: &Solid, margin: f32, task: &Ta
     let mut p = mesh.positions.clone();
     let reach = body.bounds().grown(margin);
     let push = |p: Vec3, margin: f32| -> Vec3 {
-        if !reach.contains(p) {
+        // The quick lower bound first: most of a garment is nowhere near.
+        if !reach.contains(p) || body.clearance(p) >= margin {
             return Vec3::ZERO;
         }
         let on = body.closest(p);

@@ -34,7 +34,7 @@ crate::params! {
         /// Girth around the hip.
         hip: f32 = 92.0, unit("cm"), range(50.0, 200.0);
         /// From the neck to the hem.
-        length: f32 = 63.0, unit("cm"), range(48.0, 90.0);
+        length: f32 = 63.0, unit("cm"), range(40.0, 90.0);
         /// Length of the sleeves; 0 leaves them out.
         sleeves: f32 = 24.0, unit("cm"), range(0.0, 62.0);
         /// How far the sleeves stand off the body.
@@ -256,7 +256,9 @@ fn sleeve_rings(edge: &[Vec3], sign: f32, length: f32, spread: f32) -> Vec<Vec<V
                 // Cloth gathers in the bend under the arm.
                 let crease = 0.28 * trig::cos(s * 0.9 + 1.2 * beside) * trig::smoothstep(0.0, 6.0, s) * (1.0 - 0.5 * t);
                 let round = middle + under * (below * (high + crease)) + across * (beside * (deep + crease));
-                let near = edge[i] + along * s;
+                // On the shoulder the cloth goes on outwards before it falls.
+                let over = along.lerp(Vec3::new(0.94 * sign, -0.34, 0.0), 0.5 - 0.5 * below);
+                let near = edge[i] + over * s;
                 near.lerp(round, blend)
             })
             .collect();

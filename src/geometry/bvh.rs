@@ -35,6 +35,8 @@ pub struct Closest {
     pub barycentric: Vec3,
     /// Distance to the given point.
     pub distance: f32,
+    /// Where the triangle stands in the tree's order.
+    pub slot: u32,
 }
 
 /// A bounding-volume hierarchy over triangles.
@@ -43,6 +45,8 @@ pub struct Bvh {
     tree: Bvh2,
     /// In the tree's order.
     corners: Vec<[Vec3A; 3]>,
+    /// Greatest coordinate of all, for rounding.
+    extent: f32,
 }
 
 impl Bvh {
@@ -59,7 +63,8 @@ impl Bvh {
             .iter()
             .map(|&t| [input[t as usize].v0, input[t as usize].v1, input[t as usize].v2])
             .collect();
-        Self { tree, corners }
+        let extent = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
+        Self { tree, corners, extent }
     }
 
     /// The first triangle on the way from `origin` along `direction`, at most `max` times its length away.
@@ -87,15 +92,53 @@ impl Bvh {
         self.first_hit(a, b - a, 1.0)
     }
 
+    /// True when the segment from `a` to `b` meets a triangle.
+    pub fn is_crossed(&self, a: Vec3, b: Vec3) -> bool {
+        if self.corners.is_empty() || !a.is_finite() || !(b - a).is_finite() {
+            return false;
+        }
+        let ray = Ray::new(a.into(), (b - a).into(), 0.0, 1.0);
+        !self.tree.ray_traverse_miss(ray, |ray, slot| {
+            let t = intersect(&self.corners[slot], ray.origin, ray.direction);
+            if t >= 0.0 { t } else { f32::INFINITY }
+        })
+    }
+
     /// The closest point to `p`, unless it is farther away than `max`.
     pub fn closest(&self, p: Vec3, max: f32) -> Option<Closest> {
+        self.closest_guessed(p, max, None)
+    }
+
+    /// The same, looked for sooner where a triangle that may be the closest is known by its slot. The answer is the one
+    /// of a search through all triangles, whatever the guess.
+    pub fn closest_guessed(&self, p: Vec3, max: f32, guess: Option<u32>) -> Option<Closest> {
         if self.corners.is_empty() || !p.is_finite() {
             return None;
         }
         let p = Vec3A::from(p);
+        // Distances to boxes and to triangles are rounded differently: what is a little too far is looked at too, so
+        // that the order of the walk does not matter.
+        let rounding = 1e-6 * (self.extent + p.abs().max_element());
+        let with_rounding = |squared: f32| {
+            let far = squared.sqrt() + rounding;
+            far * far
+        };
         // A little slack, so that a point at exactly `max` is found in spite of rounding.
         let mut best = max * max * 1.000_001 + f32::MIN_POSITIVE;
-        let mut found: Option<(u32, Vec3A, Vec3)> = None;
+        let mut found: Option<(u32, u32, Vec3A, Vec3)> = None;
+        let look = |slot: u32, best: &mut f32, found: &mut Option<(u32, u32, Vec3A, Vec3)>| {
+            let (q, barycentric) = closest_on_triangle(p, &self.corners[slot as usize]);
+            let d = (q - p).length_squared();
+            let triangle = self.tree.primitive_indices[slot as usize];
+            if d < *best || (d == *best && found.is_none_or(|f| triangle < f.0)) {
+                *best = d;
+                *found = Some((triangle, slot, q, barycentric));
+            }
+        };
+        if let Some(slot) = guess.filter(|&s| (s as usize) < self.corners.len()) {
+            look(slot, &mut best, &mut found);
+        }
+        let mut limit = with_rounding(best);
         let mut stack = [(0_u32, 0.0_f32); 128];
         let mut depth = 1;
         stack[0] = (0, box_distance(&self.tree, 0, p));
@@ -110,7 +153,7 @@ impl Bvh {
             } else {
                 break;
             };
-            if distance > best {
+            if distance > limit {
                 continue;
             }
             let node = &self.tree.nodes[index as usize];
@@ -122,7 +165,7 @@ impl Bvh {
                     children.swap(0, 1);
                 }
                 for child in children {
-                    if child.1 <= best {
+                    if child.1 <= limit {
                         if depth < stack.len() && overflow.is_empty() {
                             stack[depth] = child;
                             depth += 1;
@@ -133,21 +176,20 @@ impl Bvh {
                 }
                 continue;
             }
+            let before = best;
             for slot in node.first_index..node.first_index + node.prim_count {
-                let (q, barycentric) = closest_on_triangle(p, &self.corners[slot as usize]);
-                let d = (q - p).length_squared();
-                let triangle = self.tree.primitive_indices[slot as usize];
-                if d < best || (d == best && found.is_none_or(|f| triangle < f.0)) {
-                    best = d;
-                    found = Some((triangle, q, barycentric));
-                }
+                look(slot, &mut best, &mut found);
+            }
+            if best < before {
+                limit = with_rounding(best);
             }
         }
-        found.map(|(triangle, q, barycentric)| Closest {
+        found.map(|(triangle, slot, q, barycentric)| Closest {
             position: q.into(),
             triangle,
             barycentric,
             distance: best.sqrt(),
+            slot,
         })
     }
 }
@@ -165,7 +207,8 @@ impl Bvh {
             normal.dot(Vec3A::select(is_up, aabb.max, aabb.min))
         };
         let mut best = f32::NEG_INFINITY;
-        let mut stack = vec![(0_u32, support(0))];
+        let mut stack = Vec::with_capacity(64);
+        stack.push((0_u32, support(0)));
         while let Some((index, most)) = stack.pop() {
             if most <= best || box_distance(&self.tree, index, p) > reach {
                 continue;
@@ -309,6 +352,8 @@ pub(crate) mod tests {
             assert_eq!(found.distance, brute);
             assert!(bvh.closest(p, brute * 0.99).is_none());
             assert!(bvh.closest(p, brute).is_some());
+            let guess = Some(key.with(i).with(8).bits() as u32 % mesh.triangles.len() as u32);
+            assert_eq!(bvh.closest_guessed(p, f32::INFINITY, guess).unwrap(), found);
 
             let direction = key.with(i).with(3).direction();
             let first = mesh
@@ -318,6 +363,10 @@ pub(crate) mod tests {
                 .filter(|t| *t >= 0.0 && t.is_finite())
                 .fold(f32::INFINITY, f32::min);
             assert_eq!(bvh.first_hit(p, direction, 1e6).map_or(f32::INFINITY, |h| h.t), first);
+            for part in [0.5, 0.999, 1.001, 2.0] {
+                let end = p + direction * if first.is_finite() { first * part } else { 20.0 };
+                assert_eq!(bvh.is_crossed(p, end), bvh.segment_hit(p, end).is_some());
+            }
         }
     }
 

@@ -4,6 +4,7 @@
 
 pub mod bounds;
 pub mod bvh;
+mod cells;
 pub mod clip;
 pub mod curtain;
 pub mod curve;
@@ -19,6 +20,7 @@ pub mod strands;
 
 pub use bounds::Bounds;
 pub use bvh::{Bvh, Closest, Hit};
+pub use cells::Vicinity;
 pub use clip::Clip;
 pub use curtain::Curtain;
 pub use mesh::{Group, Mesh, MeshError};

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use glam::Vec3;
-use rayon::prelude::*;
 
+use super::cells::{Cells, Vicinity};
 use super::{Bounds, Bvh, Closest, Hit, Mesh, MeshError};
 use crate::math::trig;
 
@@ -121,18 +121,28 @@ impl Solid {
     /// The point of the surface closest to `p`.
     pub fn closest(&self, p: Vec3) -> SurfacePoint {
         let far = f32::MAX.sqrt();
-        let c = self.bvh.closest(p, far).unwrap_or(Closest {
-            position: self.positions[0],
-            triangle: 0,
-            barycentric: Vec3::X,
-            distance: far,
-        });
-        self.signed(p, &c)
+        self.closest_within(p, far).unwrap_or_else(|| {
+            let nowhere =
+                Closest { position: self.positions[0], triangle: 0, barycentric: Vec3::X, distance: far, slot: 0 };
+            self.signed(p, &nowhere)
+        })
     }
 
     /// The point of the surface closest to `p`, unless it is farther away than `max`.
     pub fn closest_within(&self, p: Vec3, max: f32) -> Option<SurfacePoint> {
-        self.bvh.closest(p, max).map(|c| self.signed(p, &c))
+        // What is closest to the middle of a cell is a good first guess; the answer does not depend on it.
+        let guess = self.cells.get().and_then(|cells| cells.guess(&cells.around(p)));
+        self.guessed(p, max, guess).map(|found| found.0)
+    }
+
+    /// The same, for a point whose surroundings are known.
+    pub fn closest_around(&self, p: Vec3, around: &Vicinity, max: f32) -> Option<SurfacePoint> {
+        self.guessed(p, max, self.cells().guess(around)).map(|found| found.0)
+    }
+
+    /// The closest point, and where in the tree its triangle stands, which makes a guess for places near it.
+    pub(super) fn guessed(&self, p: Vec3, max: f32, guess: Option<u32>) -> Option<(SurfacePoint, u32)> {
+        self.bvh.closest_guessed(p, max, guess).map(|c| (self.signed(p, &c), c.slot))
     }
 
     /// Exact distance to the surface: positive outside, negative inside.
@@ -149,13 +159,32 @@ impl Solid {
     /// that far away; zero or less means "ask [`Solid::signed_distance`]". Over smooth skin it falls short of the
     /// distance by less than a hundredth of the solid's size.
     pub fn clearance(&self, p: Vec3) -> f32 {
-        self.cells.get_or_init(|| Cells::build(self)).clearance(p)
+        self.around(p).clearance
     }
 
-    /// True only if the whole segment from `a` to `b` is outside; false means "ask [`Solid::segment_hit`]".
+    /// What is known at once about the surface around `p`.
+    pub fn around(&self, p: Vec3) -> Vicinity {
+        self.cells().around(p)
+    }
+
+    /// True only if the whole segment from `a` to `b` is outside; false means "ask [`Solid::is_crossed`]".
     pub fn is_surely_outside(&self, a: Vec3, b: Vec3) -> bool {
-        let cells = self.cells.get_or_init(|| Cells::build(self));
-        cells.is_free(a, b) || cells.is_free(b, a)
+        self.is_way_free((a, &self.around(a)), (b, &self.around(b)))
+    }
+
+    /// The same, where the surroundings of both ends are known.
+    pub fn is_way_free(&self, a: (Vec3, &Vicinity), b: (Vec3, &Vicinity)) -> bool {
+        let cells = self.cells();
+        cells.is_free(a.1, a.0, b.0) || cells.is_free(b.1, b.0, a.0)
+    }
+
+    fn cells(&self) -> &Cells {
+        self.cells.get_or_init(|| Cells::build(self))
+    }
+
+    /// True when the segment from `a` to `b` meets the surface: [`Solid::segment_hit`] without the place.
+    pub fn is_crossed(&self, a: Vec3, b: Vec3) -> bool {
+        self.bvh.is_crossed(a, b)
     }
 
     /// Where the segment from `a` to `b` first meets the surface.
@@ -274,153 +303,6 @@ fn pseudonormals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Normals {
         .map(|t| std::array::from_fn(|k| edges[&(t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3]))]))
         .collect();
     (faces, edges, vertices)
-}
-
-/// An octree of distances at cell centres, fine only near the surface.
-///
-/// Two lower bounds come from it. The distance is 1-Lipschitz, so in a cell with centre c it is at least
-/// d(c) - |p - c|. And whatever is closest to a point of the cell lies within R = |d(c)| + 2 r of c, where r is half the
-/// cell's diagonal: if all of the surface in that ball is below a plane n . x = h, the distance is at least n . p - h,
-/// which is far better close to a surface that is nearly flat at this scale.
-struct Cells {
-    bounds: Bounds,
-    size: f32,
-    counts: [usize; 3],
-    cells: Vec<Cell>,
-    /// Normals and heights.
-    planes: Vec<(Vec3, f32)>,
-}
-
-#[derive(Clone, Copy, Default)]
-struct Cell {
-    /// Distance at the centre.
-    distance: f32,
-    /// The first of eight children, or 0.
-    first: u32,
-    /// Number of its plane, from 1, or 0.
-    plane: u32,
-}
-
-impl Cells {
-    /// Top-level cells along the longest side.
-    const TOP: f32 = 16.0;
-    /// How often a top-level cell may be halved.
-    const LEVELS: u32 = 3;
-
-    fn build(solid: &Solid) -> Self {
-        let bounds = solid.bounds.grown(solid.bounds.size().max_element() * 0.02);
-        let size = bounds.size().max_element() / Self::TOP;
-        let counts = bounds.size().to_array().map(|s| ((s / size).ceil() as usize).max(1));
-        let centre = |i: usize| {
-            let (x, y, z) = (i % counts[0], i / counts[0] % counts[1], i / counts[0] / counts[1]);
-            bounds.min + (Vec3::new(x as f32, y as f32, z as f32) + 0.5) * size
-        };
-        let mut cells = vec![Cell::default(); counts.iter().product()];
-        let mut planes = Vec::new();
-        // Cells to be asked for: index, centre, and no less than their distance.
-        let mut level: Vec<(u32, Vec3, f32)> =
-            (0..cells.len()).map(|i| (i as u32, centre(i), f32::MAX.sqrt())).collect();
-        let mut half = size * 0.5;
-        for depth in 0..=Self::LEVELS {
-            // The half diagonal is where the first bound turns useless at the cell's corners.
-            let is_near = |d: f32| d.abs() < 1.25 * half * 3.0_f32.sqrt();
-            let found: Vec<(f32, Option<(Vec3, f32)>)> = (level.par_iter())
-                .map(|&(_, c, most)| {
-                    let near = solid.closest_within(c, most).unwrap_or_else(|| solid.closest(c));
-                    let is_last = depth == Self::LEVELS && is_near(near.distance);
-                    (near.distance, if is_last { plane(solid, c, half, &near) } else { None })
-                })
-                .collect();
-            let mut below = Vec::new();
-            for (&(cell, c, _), &(distance, plane)) in level.iter().zip(&found) {
-                let cell = cell as usize;
-                cells[cell].distance = distance;
-                if let Some(plane) = plane {
-                    planes.push(plane);
-                    cells[cell].plane = planes.len() as u32;
-                }
-                if depth < Self::LEVELS && is_near(distance) {
-                    let first = cells.len() as u32;
-                    cells[cell].first = first;
-                    cells.extend([Cell::default(); 8]);
-                    below.extend((0..8).map(|k| {
-                        let sign = |bit: u32| if k >> bit & 1 == 1 { 0.5 } else { -0.5 };
-                        let most = distance.abs() + 0.26 * Self::reach(half);
-                        (first + k, c + Vec3::new(sign(0), sign(1), sign(2)) * half, most)
-                    }));
-                }
-            }
-            level = below;
-            half *= 0.5;
-        }
-        Self { bounds, size, counts, cells, planes }
-    }
-
-    /// The cell of `p`, its centre, and half its edge; none outside of all.
-    fn find(&self, p: Vec3) -> Option<(Cell, Vec3, f32)> {
-        let cell = (p - self.bounds.min) / self.size;
-        let limit = Vec3::new(self.counts[0] as f32, self.counts[1] as f32, self.counts[2] as f32);
-        if !(cell.cmpge(Vec3::ZERO).all() && cell.cmplt(limit).all()) {
-            return None;
-        }
-        let [x, y, z] = cell.to_array().map(|c| c as usize);
-        let mut at = x + self.counts[0] * (y + self.counts[1] * z);
-        let mut c = self.bounds.min + (Vec3::new(x as f32, y as f32, z as f32) + 0.5) * self.size;
-        let mut half = self.size * 0.5;
-        loop {
-            let cell = self.cells[at];
-            if cell.first == 0 {
-                return Some((cell, c, half));
-            }
-            let above = p.cmpge(c);
-            at = cell.first as usize + above.bitmask() as usize;
-            half *= 0.5;
-            c += Vec3::select(above, Vec3::splat(half), Vec3::splat(-half));
-        }
-    }
-
-    fn plane(&self, cell: &Cell) -> Option<(Vec3, f32)> {
-        self.planes.get((cell.plane as usize).wrapping_sub(1)).copied()
-    }
-
-    fn clearance(&self, p: Vec3) -> f32 {
-        let Some((cell, c, _)) = self.find(p) else {
-            // Outside the box the box itself is the bound; NaN gives 0: "ask".
-            let out = (p - p.clamp(self.bounds.min, self.bounds.max)).length();
-            return if out > 0.0 { out } else { 0.0 };
-        };
-        let bound = cell.distance - p.distance(c);
-        self.plane(&cell).map_or(bound, |(normal, height)| bound.max(normal.dot(p) - height))
-    }
-
-    /// True when both ends are over the plane of the first one's cell and in the ball that it is good for: then so is
-    /// all between them.
-    fn is_free(&self, p: Vec3, q: Vec3) -> bool {
-        let Some((cell, c, half)) = self.find(p) else { return false };
-        self.plane(&cell).is_some_and(|(normal, height)| {
-            let reach = cell.distance.abs() + Self::reach(half);
-            q.distance_squared(c) <= reach * reach && normal.dot(p) > height && normal.dot(q) > height
-        })
-    }
-
-    /// How much farther than its centre's the closest place of any point of a cell may be from its centre.
-    fn reach(half: f32) -> f32 {
-        2.0 * half * 3.0_f32.sqrt()
-    }
-}
-
-/// The plane over everything that can be closest to a point of the cell about `c`, if the part of the cell over it is
-/// outside the solid.
-fn plane(solid: &Solid, c: Vec3, half: f32, near: &SurfacePoint) -> Option<(Vec3, f32)> {
-    let outward = (c - near.position) * near.distance.signum();
-    let normal = if near.distance.abs() > 1e-3 * half { outward.normalize_or(near.normal) } else { near.normal };
-    let reach = (near.distance.abs() + Cells::reach(half)) * 1.0001;
-    let height = solid.bvh.support_within(c, reach, normal);
-    // A little higher, for rounding.
-    let height = height + 1e-5 * (height.abs() + reach);
-    // No surface is in the part of the cell over the plane, so one place tells for all of it on which side it is.
-    let top = c + Vec3::select(normal.cmpge(Vec3::ZERO), Vec3::splat(half), Vec3::splat(-half));
-    (height.is_finite() && normal.dot(top) > height && solid.signed_distance(top) > 0.0).then_some((normal, height))
 }
 
 #[cfg(test)]

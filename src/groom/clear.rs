@@ -10,7 +10,7 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::step::Body;
-use crate::geometry::{Solid, Strands};
+use crate::geometry::{Solid, Strands, Vicinity};
 use crate::task::{Cancelled, Task};
 use rayon::prelude::*;
 
@@ -84,7 +84,13 @@ impl Clear<'_> {
             }
         };
         // Around the node before this one no surface is nearer than `free`.
-        let mut free = if scan.start > 1 { solid.clearance(points[scan.start - 1]).max(0.0) } else { 0.0 };
+        let mut free = 0.0;
+        // What is known around it, where that was looked up.
+        let mut before: Option<Vicinity> = None;
+        if scan.start > 1 {
+            let around = solid.around(points[scan.start - 1]);
+            (free, before) = (around.clearance.max(0.0), Some(around));
+        }
         let mut was_inside = false;
         for k in scan {
             let (a, b) = (points[k - 1], points[k]);
@@ -92,29 +98,36 @@ impl Clear<'_> {
             // The distance falls by no more than the way: while it lasts, nothing needs to be asked.
             if k > 1 && free - way >= self.body.margin {
                 free -= way;
+                before = None;
                 continue;
             }
-            let clearance = solid.clearance(b).max(0.0);
-            let is_free = || solid.is_surely_outside(a, b) || is_covered(solid, (a, free), (b, clearance), 2);
-            if clearance >= self.body.margin && (k == 1 || is_free()) {
+            let around = solid.around(b);
+            let clearance = around.clearance.max(0.0);
+            let at_a = before.replace(around);
+            let mut known = None;
+            let mut is_surely_outside = || {
+                *known.get_or_insert_with(|| {
+                    let at_a = at_a.unwrap_or_else(|| solid.around(a));
+                    solid.is_way_free((a, &at_a), (b, &around))
+                })
+            };
+            if clearance >= self.body.margin
+                && (k == 1 || is_surely_outside() || is_covered(solid, (a, free), (b, clearance), 2))
+            {
                 (free, was_inside) = (clearance, false);
                 continue;
             }
             let margin = self.margin_at(points, k);
             let reach = way.max(self.body.margin);
-            let mut near = if k == 1 { Some(solid.closest(b)) } else { solid.closest_within(b, reach) };
-            if near.is_none() && was_inside {
-                near = Some(solid.closest(b));
-            }
+            let most = if k == 1 || was_inside { f32::MAX.sqrt() } else { reach };
+            let near = solid.closest_around(b, &around, most);
             let Some(near) = near else {
                 // No surface as near as the last node: the way does not cross one.
                 free = reach;
                 continue;
             };
-            let crosses = k > 1
-                && free + near.distance.max(0.0) <= way
-                && !solid.is_surely_outside(a, b)
-                && solid.segment_hit(a, b).is_some();
+            let crosses =
+                k > 1 && free + near.distance.max(0.0) <= way && !is_surely_outside() && solid.is_crossed(a, b);
             was_inside = near.distance < 0.0;
             free = near.distance.max(0.0);
             if near.distance < 0.98 * margin {
@@ -185,7 +198,7 @@ impl Clear<'_> {
             let margin = self.margin_at(points, k);
             let is_free = |q: Vec3| {
                 let clearance = solid.clearance(q);
-                clearance > v.distance(q) || (!solid.contains(q) && solid.segment_hit(v, q).is_none())
+                clearance > v.distance(q) || (!solid.contains(q) && !solid.is_crossed(v, q))
             };
             let direct = solid.clearance(goal) >= margin || solid.signed_distance(goal) >= 0.98 * margin;
             let end = if direct && is_free(goal) {
@@ -262,20 +275,28 @@ fn is_covered(solid: &Solid, a: (Vec3, f32), b: (Vec3, f32), depth: u32) -> bool
 /// surface.
 pub fn is_inside(solid: &Solid, points: &[Vec3]) -> bool {
     let mut free = 0.0;
+    let mut before: Option<Vicinity> = None;
     points.iter().enumerate().skip(1).any(|(k, &b)| {
         let a = points[k - 1];
         let way = a.distance(b);
         if k > 1 && free > way {
             free -= way;
+            before = None;
             return false;
         }
-        let clearance = solid.clearance(b).max(0.0);
-        let before = std::mem::replace(&mut free, clearance);
+        let around = solid.around(b);
+        let clearance = around.clearance.max(0.0);
+        let was_free = std::mem::replace(&mut free, clearance);
+        let at_a = before.replace(around);
+        let is_surely_outside = || {
+            let at_a = at_a.unwrap_or_else(|| solid.around(a));
+            solid.is_way_free((a, &at_a), (b, &around))
+        };
         (clearance == 0.0 && solid.contains(b))
             || (k > 1
-                && !solid.is_surely_outside(a, b)
-                && !is_covered(solid, (a, before), (b, clearance), 2)
-                && solid.segment_hit(a, b).is_some())
+                && !is_surely_outside()
+                && !is_covered(solid, (a, was_free), (b, clearance), 2)
+                && solid.is_crossed(a, b))
     })
 }
 

@@ -101,7 +101,7 @@ pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
     }
     check_value("the noise", options.noise, 0.0, f32::MAX)?;
     check_value("the thickness", options.thickness, 0.0, f32::MAX)?;
-    let nodes = options.nodes.unwrap_or_else(|| usual_nodes(input.guides)).max(2);
+    let nodes = member_nodes(input.guides, options);
     let n = input.roots.len();
     check_size(n as u64, n as u64 * nodes as u64)?;
 
@@ -157,6 +157,11 @@ pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
         layout::compact(&mut strands, &counts);
     }
     Ok(Warned { value: strands, warnings })
+}
+
+/// Nodes that every member has.
+pub fn member_nodes(guides: &Strands, options: &FillOptions) -> usize {
+    options.nodes.unwrap_or_else(|| usual_nodes(guides)).max(2)
 }
 
 /// Farthest that a member's segment may lie from the arc that it stands for, cm: half a pixel of a picture of 1024.

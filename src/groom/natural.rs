@@ -445,6 +445,15 @@ pub fn deform(input: &Deform, task: &Task) -> Result<Warned<Strands>, GroomError
     Ok(Warned { value: strands, warnings })
 }
 
+/// Nodes that all strands together have after [`deform`].
+///
+/// # Errors
+/// Bad strands, or the task was cancelled.
+pub fn deformed_points(input: &Deform, task: &Task) -> Result<usize, GroomError> {
+    input.strands.validate()?;
+    Ok(count_nodes(input, &Entered::new(input.queue.domains.len()), task)?.iter().sum())
+}
+
 /// How many nodes every strand needs.
 fn count_nodes(input: &Deform, entered: &Entered, task: &Task) -> Result<Vec<usize>, GroomError> {
     use rayon::prelude::*;

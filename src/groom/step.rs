@@ -86,6 +86,6 @@ impl Body<'_> {
             Some(again) => again.position + again.normal * margin,
             None => out,
         };
-        Some((out, self.solid.segment_hit(start, out).is_none() && !self.solid.contains(out)))
+        Some((out, !self.solid.is_crossed(start, out) && !self.solid.contains(out)))
     }
 }

@@ -11,6 +11,9 @@ pub enum HeadError {
     /// It has no inside.
     #[error(transparent)]
     Solid(#[from] SolidError),
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] crate::task::Cancelled),
     /// Nothing in it has a head's shape.
     #[error("no head was found in the mesh")]
     NoHead,
@@ -66,7 +69,7 @@ impl HeadError {
             Self::Solid(SolidError::NoVolume { .. }) => {
                 Some("a head must be a surface with an inside; is it a single sheet, or only a face?".into())
             }
-            Self::Solid(_) => None,
+            Self::Solid(_) | Self::Cancelled(_) => None,
             Self::NoHead | Self::NoSide { .. } => {
                 let names = Landmarks::NAMES.join(", ");
                 Some(format!("it must stand upright (Y up) and look to +Z; or give all landmarks yourself: {names}"))

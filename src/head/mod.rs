@@ -36,7 +36,7 @@ use crate::geometry::sample::{BlueNoise, Patch, Sample};
 use crate::geometry::{Bvh, Mesh, Root, Solid};
 use crate::math::Digest;
 use crate::params::{Object, nearest};
-use crate::task::{Warned, Warning};
+use crate::task::{Task, Warned, Warning};
 
 pub use ear::Ear;
 pub use error::HeadError;
@@ -101,18 +101,30 @@ impl Head {
     ///
     /// # Errors
     /// A mesh without volume, without a head that can be told, or an unknown landmark; each says what to do.
-    pub fn from_mesh(
+    pub fn from_mesh(mesh: Mesh, name: &str, overrides: &BTreeMap<String, Vec3>) -> Result<Warned<Self>, HeadError> {
+        Self::from_mesh_until(mesh, name, overrides, &Task::new())
+    }
+
+    /// The same, unless the task is cancelled: it is asked before every step.
+    ///
+    /// # Errors
+    /// As [`Head::from_mesh`], and [`HeadError::Cancelled`].
+    pub fn from_mesh_until(
         mut mesh: Mesh,
         name: &str,
         overrides: &BTreeMap<String, Vec3>,
+        task: &Task,
     ) -> Result<Warned<Self>, HeadError> {
+        task.check()?;
         // Closing and orienting first: a mesh without volume has no head.
         Solid::new(&mesh)?;
+        task.check()?;
         if mesh.volume() < 0.0 {
             mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
             mesh.normals.clear();
         }
         let bvh = Bvh::new(&mesh.positions, &mesh.triangles);
+        task.check()?;
         let mut warnings = Vec::new();
         let mut landmarks = if overrides.len() == Landmarks::NAMES.len() {
             Landmarks::from_all([Vec3::ZERO; 9])
@@ -122,14 +134,19 @@ impl Head {
         for (key, &place) in overrides {
             landmarks = landmarks.with(key, on_surface(&bvh, key, place, &mut warnings)?);
         }
-        Ok(Warned { value: Self::with_landmarks(mesh, name, landmarks)?, warnings })
+        Ok(Warned { value: Self::built(mesh, name, landmarks, task)?, warnings })
     }
 
     /// A head whose landmarks are known, in the mesh's own space: moves both into head space.
     ///
     /// # Errors
     /// A mesh without volume, or landmarks that cannot be a head's.
-    pub fn with_landmarks(mut mesh: Mesh, name: &str, landmarks: Landmarks) -> Result<Self, HeadError> {
+    pub fn with_landmarks(mesh: Mesh, name: &str, landmarks: Landmarks) -> Result<Self, HeadError> {
+        Self::built(mesh, name, landmarks, &Task::new())
+    }
+
+    fn built(mut mesh: Mesh, name: &str, landmarks: Landmarks, task: &Task) -> Result<Self, HeadError> {
+        task.check()?;
         mesh.validate().map_err(crate::geometry::SolidError::from)?;
         let placement = space::placement(&landmarks)?;
         let inverse = placement.inverse();
@@ -144,9 +161,12 @@ impl Head {
                 *n = inverse.transform_vector3(*n);
             }
         }
+        task.check()?;
         let solid = Solid::new(&mesh)?;
+        task.check()?;
         let scale = landmarks.height() / ADULT_HEIGHT;
         let patch = Patch::new(&mesh, space::growing(&mesh, &landmarks)).ok_or(HeadError::NoHead)?;
+        task.check()?;
         let ears = space::ears(&mesh, &solid, &landmarks);
         Ok(Self {
             name: name.to_owned(),

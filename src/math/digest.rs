@@ -80,13 +80,16 @@ impl Digest {
 
     /// Vectors, by their bits.
     pub fn vectors(&mut self, vectors: &[Vec3]) -> &mut Self {
-        self.packed(vectors, |v| {
-            let (mut out, [x, y, z]) = ([0; 12], v.to_array().map(f32::to_le_bytes));
-            out[..4].copy_from_slice(&x);
-            out[4..8].copy_from_slice(&y);
-            out[8..].copy_from_slice(&z);
-            out
-        })
+        const COUNT: usize = BLOCK / 12;
+        self.number(vectors.len() as u64);
+        // In two steps, each of which the compiler makes a plain copy of: together they would be five times slower.
+        let (mut floats, mut bytes) = ([[0.0; 3]; COUNT], [[0; 4]; 3 * COUNT]);
+        for some in vectors.chunks(COUNT) {
+            floats.iter_mut().zip(some).for_each(|(to, v)| *to = v.to_array());
+            bytes.iter_mut().zip(floats.as_flattened()).for_each(|(to, f): (&mut [u8; 4], &f32)| *to = f.to_le_bytes());
+            self.0.update(&bytes.as_flattened()[..some.len() * 12]);
+        }
+        self
     }
 
     /// Vectors in the plane, by their bits.

@@ -97,6 +97,32 @@ pub struct Framing {
     pub size: Vec2,
 }
 
+impl Framing {
+    /// One framing that holds all of these, of the same directions; none of none.
+    pub fn around(framings: &[Self], views: &[Mat3]) -> Option<Self> {
+        let (first, more) = framings.split_first()?;
+        if more.is_empty() {
+            return Some(first.clone());
+        }
+        let mut size = first.size;
+        let centres = views
+            .iter()
+            .enumerate()
+            .map(|(i, &turn)| {
+                let corners = framings.iter().flat_map(|f| {
+                    let middle = turn.transpose() * f.centres[i];
+                    let half = (0.5 * f.size).extend(0.0);
+                    [middle - half, middle + half]
+                });
+                let b = Bounds::of(corners);
+                size = size.max(b.size().truncate());
+                turn * b.centre()
+            })
+            .collect();
+        Some(Self { centres, size })
+    }
+}
+
 /// Frames hair and head; of a bust only the neck and the tops of the shoulders need to fit.
 ///
 /// Landmarks are not part of a scene, so "head" is what lies above 1.5 times the height of the vertex over the origin

@@ -16,7 +16,7 @@ use super::shade::{Coat, Skin, Sky, Studio};
 use super::shadow::{Density, density};
 use super::strands::{Bundle, Ink};
 use super::surface::{self, Shell};
-use super::toon::Toon;
+use super::toon::{self, Toon};
 
 /// An opaque picture, sRGB.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,6 +87,15 @@ pub enum RenderError {
         /// Most allowed, in millions.
         most: u64,
     },
+}
+
+/// Height of the strip at the lower border that fades out, as a fraction of a view's.
+const FADE: f32 = 0.10;
+
+/// The cut through a bust fades; a garment has an end of its own.
+fn fade(scene: &Scene) -> f32 {
+    let is_bust = scene.parts.iter().all(|p| !matches!(p.body, Body::Mesh(..)) || p.is_head());
+    if is_bust { FADE } else { 0.0 }
 }
 
 /// Most pixels of a sheet, in millions.
@@ -277,6 +286,12 @@ struct Stage {
 impl Stage {
     fn new(scene: &Scene, stroke: f32, task: &Task) -> Result<Self, Cancelled> {
         let mut meshes = Vec::new();
+        // Flat tones need neither shadows in hair nor a sky.
+        if scene.look.shading == Shading::Toon && !scene.look.debug {
+            let density = density(&[], &[], task)?;
+            let sky = Sky::new(&density, task)?;
+            return Ok(Self { meshes, density, sky, toon: Some(Toon::new(scene)) });
+        }
         for part in &scene.parts {
             if let Body::Mesh(mesh, material) = &part.body {
                 task.check()?;
@@ -294,12 +309,6 @@ impl Stage {
                 let skin = Skin::new(&MeshMaterial { roughness, ..MeshMaterial::default() });
                 meshes.push((locks.mesh.mesh.clone(), skin, Some(tints)));
             }
-        }
-        // Flat tones need neither shadows in hair nor a sky.
-        if scene.look.shading == Shading::Toon && !scene.look.debug {
-            let density = density(&[], &[], task)?;
-            let sky = Sky::new(&density, task)?;
-            return Ok(Self { meshes: vec![], density, sky, toon: Some(Toon::new(scene)) });
         }
         let hair: Vec<(&Strands, f32, f32)> = scene
             .hair()
@@ -325,6 +334,11 @@ impl Stage {
         task: &Task,
     ) -> Result<(Vec<u8>, Vec<Label>), Cancelled> {
         let ss = options.supersample as usize;
+        if let (Some(toon), None) = (&self.toon, scene.hair().next()) {
+            task.progress("surfaces", 0.2);
+            let paper = toon::Paper { background: paper.to_linear(), fade: fade(scene) };
+            return Ok((toon.picture(camera, ss, paper, task)?, vec![]));
+        }
         let fine = camera.enlarged(ss);
         let meshes: Vec<&Mesh> = self.meshes.iter().map(|(mesh, ..)| mesh).collect();
         task.progress("light", 0.0);
@@ -354,8 +368,6 @@ impl Stage {
         for (bundle, colours) in bundles.iter_mut().zip(&flat) {
             bundle.ink = Ink::Flat(colours);
         }
-        // The cut through a bust fades; a garment has its own end.
-        let is_bust = scene.parts.iter().all(|p| !matches!(p.body, Body::Mesh(..)) || p.is_head());
         let canvas = Canvas {
             camera: &fine,
             supersample: ss,
@@ -363,7 +375,7 @@ impl Stage {
             layer: &layer,
             solid: if drawing.is_some() { 0.45 } else { 1.0 },
             background: paper.to_linear(),
-            fade: if is_bust { 0.10 } else { 0.0 },
+            fade: fade(scene),
         };
         task.progress("hair", 0.4);
         let pixels = raster::draw(&bundles, &canvas, task)?;

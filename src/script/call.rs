@@ -8,6 +8,7 @@ use std::time::Instant;
 use mlua::{Lua, MultiValue};
 
 use super::convert::{Reading, to_lua};
+use super::limits::Need;
 use super::memo::{Kept, Origin};
 use super::registry::{Entry, Shape};
 use super::session::{Raised, Session, Timing};
@@ -231,6 +232,24 @@ impl Call<'_> {
         }
     }
 
+    /// Asks for room for what the call is about to make.
+    ///
+    /// # Errors
+    /// A limit of the run that it would pass; `path` is the field to blame.
+    pub fn claim(&self, path: &str, need: Need) -> Result<()> {
+        self.session.claimed.set(self.room(path, need)?);
+        Ok(())
+    }
+
+    /// The same without taking the room; gives what would be taken in all.
+    ///
+    /// # Errors
+    /// As [`Call::claim`].
+    pub fn room(&self, path: &str, need: Need) -> Result<Need> {
+        let claimed = self.session.options.limits.check(self.session.claimed.get(), need);
+        claimed.map_err(|r| self.problem_at(path, r.message, Some(r.hint)))
+    }
+
     /// The VM.
     pub fn lua(&self) -> &Lua {
         self.lua
@@ -243,6 +262,14 @@ impl Call<'_> {
 
     fn stack(&self) -> &[Frame] {
         self.stack.get_or_init(|| trace::frames(self.lua, 0))
+    }
+
+    /// Line and column of a field in the text of the call.
+    pub fn place_of(&self, field: &str) -> (usize, usize) {
+        let Some(top) = self.stack().first() else { return (0, 0) };
+        let text = CallText { function: self.entry.name, path: field, unknown: None, positional: None };
+        let place = self.session.sources.borrow().field(&top.file, top.line, &text);
+        (place.line, place.column)
     }
 
     /// An error about the call as a whole.

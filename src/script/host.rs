@@ -11,12 +11,22 @@ use mlua::{Lua, MultiValue};
 use super::convert::Reading;
 use super::files::Files;
 use super::sandbox::{Deadline, Interruptible};
-use super::session::{Raised, Session, Timing};
-use super::{Diagnostic, Memo, Parameter, Sources, bind, protect, sandbox, trace};
+use super::session::{Raised, Session, Thinned, Timing};
+use super::{Diagnostic, Limits, Memo, Parameter, Sources, bind, protect, sandbox, trace};
 use crate::head::load::Unit;
 use crate::params::Value;
 use crate::scene::Scene;
 use crate::task::Task;
+
+/// What parameters are given by, for messages.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SetBy {
+    /// `--set name=value`.
+    #[default]
+    Option,
+    /// The table of `t:run "style.lua" { name = value }`.
+    Table,
+}
 
 /// What a run is asked for.
 #[derive(Clone, Debug)]
@@ -35,6 +45,14 @@ pub struct Options {
     pub allow: Vec<PathBuf>,
     /// Longest time for the script and everything it calls.
     pub time_limit: Duration,
+    /// How much it may make.
+    pub limits: Limits,
+    /// The seed was given by its name among parameters, which may mean a parameter of the script.
+    pub names_seed: bool,
+    /// What the parameters were given by.
+    pub set_by: SetBy,
+    /// Most members of each fill, for a draft; the strands are drawn as much wider as there are fewer of them.
+    pub draft: Option<usize>,
     /// What earlier runs have computed; runs that share it find it again.
     pub memo: Arc<Memo>,
 }
@@ -50,6 +68,10 @@ impl Options {
             head_unit: None,
             allow: vec![],
             time_limit: Duration::from_secs(60),
+            limits: Limits::default(),
+            names_seed: false,
+            set_by: SetBy::default(),
+            draft: None,
             memo: Arc::default(),
         }
     }
@@ -95,6 +117,8 @@ pub struct Outcome {
     pub sources: Sources,
     /// Calls that took half a millisecond or more, or whose value the memo keeps, in order.
     pub timings: Vec<Timing>,
+    /// What a draft has left out.
+    pub thinned: Thinned,
 }
 
 /// Runs a script. The task is spent afterwards: running out of time cancels it.
@@ -123,6 +147,7 @@ pub(super) fn run_session(session: &Rc<Session>) -> Outcome {
         dependencies: session.access.asked(),
         sources: session.sources.take(),
         timings: session.timings.take(),
+        thinned: session.thinned.take(),
     }
 }
 
@@ -177,6 +202,11 @@ fn scene(_lua: &Lua, session: &Session, file: &str, returned: MultiValue) -> Res
 fn unknown_parameters(session: &Session) -> Result<(), Raised> {
     let declared = session.parameters.borrow();
     let names = || declared.iter().map(|p| p.name.as_str());
+    if session.options.names_seed && names().any(|n| n == "seed") {
+        let message = "`seed` is the seed of the run, and the script has a parameter of that name";
+        let hint = "give the script's parameter another name, such as `variant`";
+        return Err(Raised(vec![Diagnostic::error(message).hint(hint)]));
+    }
     let unknown: Vec<Diagnostic> = session
         .options
         .set

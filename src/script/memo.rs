@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::deform::Fitted;
 use crate::garment::Garment;
-use crate::geometry::{Root, Strands};
+use crate::geometry::{Mesh, Root, Strands};
 use crate::head::Head;
 use crate::math::Digest;
 use crate::task::Warning;
@@ -37,13 +37,19 @@ impl Kept for Head {
 
 impl Kept for Garment {
     fn bytes(&self) -> usize {
-        self.mesh.positions.len() * 32 + self.mesh.triangles.len() * 16
+        self.mesh.bytes()
     }
 }
 
 impl Kept for Fitted {
     fn bytes(&self) -> usize {
-        self.mesh.positions.len() * 32 + self.mesh.triangles.len() * 16 + self.lattices.len() * 2048
+        self.mesh.bytes() + self.lattices.len() * 2048
+    }
+}
+
+impl Kept for Mesh {
+    fn bytes(&self) -> usize {
+        (self.positions.len() + self.normals.len()) * 12 + self.uvs.len() * 8 + self.triangles.len() * 12
     }
 }
 
@@ -143,6 +149,11 @@ impl Memo {
     /// True when there is nothing in it.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// True when there is a value with this key.
+    pub fn has(&self, key: u128) -> bool {
+        self.shelf().items.contains_key(&key)
     }
 
     /// The value with this key and the warnings of its computation.

@@ -40,7 +40,8 @@ pub fn open(session: Rc<Session>) -> mlua::Result<Lua> {
         | StdLib::VECTOR
         | StdLib::UTF8;
     let lua = Lua::new_with(libraries, LuaOptions::new())?;
-    lua.set_memory_limit(MEMORY)?;
+    let own = usize::try_from(session.options.limits.memory).unwrap_or(MEMORY).min(MEMORY);
+    lua.set_memory_limit(own)?;
     let globals = lua.globals();
     for name in REMOVED {
         globals.raw_set(*name, mlua::Value::Nil)?;

@@ -11,6 +11,7 @@ use std::time::Duration;
 use mlua::Lua;
 
 use super::files::{Access, Files};
+use super::limits::Need;
 use super::memo::Origin;
 use super::{Diagnostic, Options, Parameter, Sources};
 use crate::head::Head;
@@ -61,6 +62,17 @@ pub struct Timing {
     pub origin: Option<Origin>,
 }
 
+/// What a draft leaves out; in any other run nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Thinned {
+    /// Members that the fills gave.
+    pub members: usize,
+    /// Members that they give in full.
+    pub of: usize,
+    /// How many of those in full the memo does not have yet.
+    pub pending: usize,
+}
+
 /// The state of one run, shared by all bindings.
 pub struct Session {
     /// What the run was asked for.
@@ -81,6 +93,10 @@ pub struct Session {
     pub parameters: RefCell<Vec<Parameter>>,
     /// Calls that took time, in order.
     pub timings: RefCell<Vec<Timing>>,
+    /// What all calls so far have made or are about to make.
+    pub claimed: Cell<Need>,
+    /// What a draft has left out so far.
+    pub thinned: Cell<Thinned>,
     /// Heads made so far, by what was asked for.
     pub heads: RefCell<BTreeMap<String, Arc<Head>>>,
     /// Heads whose hair is carried to another one at the end: (from, to).
@@ -109,6 +125,8 @@ impl Session {
             logged: Cell::new(0),
             parameters: RefCell::default(),
             timings: RefCell::default(),
+            claimed: Cell::default(),
+            thinned: Cell::default(),
             heads: RefCell::default(),
             carries: RefCell::default(),
         }

@@ -12,6 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct Cancelled;
 
 type Progress = dyn Fn(&str, f32) + Send + Sync;
+type Polled = dyn Fn() + Send + Sync;
 
 /// A cancel flag and a progress listener, cheap to clone and to poll from many threads.
 #[derive(Clone, Default)]
@@ -19,6 +20,7 @@ pub struct Task {
     cancel: Arc<AtomicBool>,
     parent: Option<Arc<Task>>,
     progress: Option<Arc<Progress>>,
+    polled: Option<Arc<Polled>>,
 }
 
 impl Task {
@@ -30,13 +32,22 @@ impl Task {
     /// A part of this task: cancelled with it, but cancelling the part leaves the whole running.
     #[must_use]
     pub fn child(&self) -> Self {
-        Self { cancel: Arc::default(), parent: Some(Arc::new(self.clone())), progress: self.progress.clone() }
+        let progress = self.progress.clone();
+        Self { cancel: Arc::default(), parent: Some(Arc::new(self.clone())), progress, polled: None }
     }
 
     /// The same task, reporting progress to `listener` as (what is done, fraction 0..=1).
     #[must_use]
     pub fn with_progress(mut self, listener: impl Fn(&str, f32) + Send + Sync + 'static) -> Self {
         self.progress = Some(Arc::new(listener));
+        self
+    }
+
+    /// The same task, calling `listener` whenever it is asked whether it was cancelled: a test counts by it how often a
+    /// computation looks up.
+    #[must_use]
+    pub fn with_polls(mut self, listener: impl Fn() + Send + Sync + 'static) -> Self {
+        self.polled = Some(Arc::new(listener));
         self
     }
 
@@ -47,6 +58,9 @@ impl Task {
 
     /// True once [`Task::cancel`] was called.
     pub fn is_cancelled(&self) -> bool {
+        if let Some(polled) = &self.polled {
+            polled();
+        }
         self.cancel.load(Ordering::Relaxed) || self.parent.as_ref().is_some_and(|p| p.is_cancelled())
     }
 

@@ -5,6 +5,7 @@
 
 mod budget;
 pub mod diff;
+pub mod draft;
 mod figures;
 mod keep;
 mod new;
@@ -19,5 +20,5 @@ pub mod watch;
 pub use budget::{Budget, keep_within};
 pub use figures::{PartFigures, figures};
 pub use new::{DEFINITIONS, NewError, api, new};
-pub use output::{Output, WriteError, Written, write_all};
+pub use output::{Output, Unwritten, WriteError, Written, write_all, write_until};
 pub use run::{Report, RunError, RunOptions, Stage, exports, preview, run};

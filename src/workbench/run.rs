@@ -6,9 +6,10 @@ use std::time::{Duration, Instant};
 
 use super::budget::Budget;
 use super::keep::{Shows, kept, scene_key};
-use super::output::{Output, WriteError, Written, write_all};
+use super::output::{Output, Unwritten, WriteError, Written, write_until};
 use super::{PartFigures, figures};
 use crate::export::{ExportError, GlbOptions, StrandForm, glb, guides_glb};
+use crate::math::Digest;
 use crate::render::{PngError, RenderError, SheetOptions, Speed, png, sheet};
 use crate::scene::{Background, Scene, View};
 use crate::script::{self, Ending, Files, Origin, Outcome};
@@ -79,6 +80,15 @@ pub enum RunError {
     Write(#[from] WriteError),
 }
 
+impl From<Unwritten> for RunError {
+    fn from(error: Unwritten) -> Self {
+        match error {
+            Unwritten::Cancelled(_) => Self::Cancelled,
+            Unwritten::Write(error) => Self::Write(error),
+        }
+    }
+}
+
 impl From<RenderError> for RunError {
     fn from(error: RenderError) -> Self {
         match error {
@@ -126,7 +136,7 @@ pub fn run(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
 /// Runs a script and writes its picture only, coded quickly: the first half of [`run`], for somebody who waits.
 pub fn preview(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
     let mut report = prepare(options, files, task);
-    finish(options, &mut report, task, |scene, stages| pictures(options, scene, Speed::Fast, task, stages));
+    draw(options, &mut report, task);
     report
 }
 
@@ -137,7 +147,7 @@ pub fn exports(options: &RunOptions, report: &mut Report, task: &Task) {
 }
 
 /// A scene with its figures, and nothing written yet.
-fn prepare(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
+pub(super) fn prepare(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
     let mut stages = vec![];
     let outcome = timed(&mut stages, "script", || script::run(&options.script, files, task));
     let mut report = Report { outcome, figures: vec![], stages, budget: None, written: Ok(vec![]) };
@@ -164,6 +174,18 @@ fn prepare(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
     report
 }
 
+/// The second half of [`preview`], after [`prepare`].
+pub(super) fn draw(options: &RunOptions, report: &mut Report, task: &Task) {
+    finish(options, report, task, |scene, stages| pictures(options, scene, Speed::Fast, task, stages));
+}
+
+/// True when the memo has all that [`draw`] would make.
+pub(super) fn is_drawn(options: &RunOptions, scene: &Scene) -> bool {
+    let is_kept =
+        |debug| options.script.memo.has(picture_key(options, &shown(scene, debug), debug, Speed::Fast).finish());
+    is_kept(false) && (!options.debug || is_kept(true))
+}
+
 /// Makes outputs from the report's scene and puts them into place.
 fn finish(
     options: &RunOptions,
@@ -180,7 +202,7 @@ fn finish(
         (Ending::Done, Some(scene)) => make(scene, stages).and_then(|outputs| {
             // Cancelled at the very end: what was made is not wanted any more.
             task.check().map_err(|_| RunError::Cancelled)?;
-            Ok(timed(stages, "write", || write_all(&options.out, &outputs))?)
+            Ok(timed(stages, "write", || write_until(&options.out, &outputs, task))?)
         }),
         (Ending::Done | Ending::Failed, _) => Err(RunError::Script),
     };
@@ -232,15 +254,24 @@ fn picture(
     task: &Task,
     stages: &mut Vec<Stage>,
 ) -> Result<Arc<Vec<u8>>, RunError> {
-    let mut drawn = scene.clone();
-    drawn.look.debug = debug;
-    let (what, shows) = if debug { ("debug picture", Shows::Domains) } else { ("picture", Shows::Hair) };
-    let memo = &options.script.memo;
-    found(stages, what, || {
-        let mut key = scene_key("picture 1", &drawn, shows, memo);
-        key.data(&options.sheet).data(&speed);
-        kept(memo, &key, || Ok(png::encode(&sheet(&drawn, &options.sheet, task)?, speed)?))
+    let drawn = shown(scene, debug);
+    found(stages, if debug { "debug picture" } else { "picture" }, || {
+        let key = picture_key(options, &drawn, debug, speed);
+        kept(&options.script.memo, &key, || Ok(png::encode(&sheet(&drawn, &options.sheet, task)?, speed)?))
     })
+}
+
+fn shown(scene: &Scene, debug: bool) -> Scene {
+    let mut shown = scene.clone();
+    shown.look.debug = debug;
+    shown
+}
+
+fn picture_key(options: &RunOptions, drawn: &Scene, debug: bool, speed: Speed) -> Digest {
+    let shows = if debug { Shows::Domains } else { Shows::Hair };
+    let mut key = scene_key("picture 1", drawn, shows, &options.script.memo);
+    key.data(&options.sheet).data(&speed);
+    key
 }
 
 /// Times a step that may be found in the memo.

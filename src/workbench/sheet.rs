@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use glam::Mat3;
 
-use super::output::{Output, Written, write_all};
+use super::output::{Output, Written, write_until};
 use super::run::RunError;
 use super::variations::{MOST_COMBINATIONS, Variation, combinations};
-use crate::render::{Cell, Picture, SheetOptions, Speed, camera, contact, png, views};
+use crate::render::camera::{self, Framing, frame};
+use crate::render::{Cell, SheetOptions, Speed, contact, png, views};
 use crate::scene::{Background, Scene, View};
 use crate::script::{self, Diagnostic, Ending, Files, Options, Outcome};
 use crate::task::Task;
@@ -26,6 +27,8 @@ pub struct ContactOptions {
     pub turntable: Option<u32>,
     /// Size and fineness of a cell.
     pub sheet: SheetOptions,
+    /// Each picture framed on its own, as a run's is; otherwise one framing holds them all, so that they compare.
+    pub fit: bool,
     /// Instead of the style's background.
     pub background: Option<Background>,
     /// Folder of the output.
@@ -45,7 +48,8 @@ pub struct ContactReport {
 
 /// Makes a contact sheet. Nothing is written when anything fails; `tell` hears of each run before it begins.
 ///
-/// Each cell has the very pixels that a run with these parameters and this view alone draws at this size.
+/// Each cell shows the very scene that a run with these parameters makes; with `fit` it has the very pixels that the
+/// run with this view alone draws at this size.
 pub fn contact_sheet(
     options: &ContactOptions,
     files: &Arc<dyn Files>,
@@ -69,7 +73,8 @@ pub fn contact_sheet(
         if task.is_cancelled() {
             return Err(RunError::Cancelled);
         }
-        Ok(write_all(&options.out, &[Output { name: format!("{name}.sheet.png"), bytes: bytes.into() }])?)
+        let output = Output { name: format!("{name}.sheet.png"), bytes: bytes.into() };
+        Ok(write_until(&options.out, &[output], task)?)
     });
     report
 }
@@ -82,7 +87,7 @@ fn cells(
     runs: &mut Vec<(String, Outcome)>,
 ) -> Result<(Vec<Cell>, Background), RunError> {
     let all = combinations(&options.vary);
-    let mut cells = vec![];
+    let (mut cells, mut made, mut waiting) = (vec![], vec![], 0);
     let mut background = options.background.unwrap_or(Background::White);
     for (i, combination) in all.iter().enumerate() {
         let label = combination.iter().map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join("  ");
@@ -103,19 +108,69 @@ fn cells(
         if options.background.is_none() && i == 0 {
             background = scene.look.background;
         }
-        let (pictures, names) = pictures(options, scene, background, task)?;
-        cells.extend(pictures.into_iter().zip(names).map(|(picture, view)| Cell {
-            picture,
-            label: if label.is_empty() {
-                view
-            } else if options.turntable.is_some() {
-                format!("{label}  {view}")
-            } else {
-                label.clone()
-            },
-        }));
+        let (sights, names) = sights(options, &scene);
+        let framing = frame(&scene, &sights);
+        // Scenes wait for the last framing; what is too much to keep is made again then.
+        let bytes: usize = scene.hair().map(|(_, hair)| hair.strands.bytes()).sum();
+        let kept = if options.fit || waiting + bytes <= WAITING { Some(scene) } else { None };
+        waiting += bytes;
+        let mut one = Made { combination, label, scene: kept, sights, names, framing };
+        if options.fit {
+            cells.extend(one.cells(options, None, background, files, task)?);
+        } else {
+            made.push(one);
+        }
+    }
+    let framings: Vec<(Vec<Mat3>, Framing)> = made.iter().map(|m| (m.sights.clone(), m.framing.clone())).collect();
+    for one in &mut made {
+        // A parameter may decide where a style is looked at from.
+        let like: Vec<Framing> = framings.iter().filter(|f| f.0 == one.sights).map(|f| f.1.clone()).collect();
+        let all = Framing::around(&like, &one.sights);
+        cells.extend(one.cells(options, all.as_ref(), background, files, task)?);
     }
     Ok((cells, background))
+}
+
+/// Bytes of strands that wait for their picture: a dozen full heads of hair.
+const WAITING: usize = 600 << 20;
+
+/// A run of one combination, to be drawn.
+struct Made<'a> {
+    combination: &'a [(String, String)],
+    label: String,
+    scene: Option<Scene>,
+    sights: Vec<Mat3>,
+    names: Vec<String>,
+    framing: Framing,
+}
+
+impl Made<'_> {
+    fn cells(
+        &mut self,
+        options: &ContactOptions,
+        framing: Option<&Framing>,
+        background: Background,
+        files: &Arc<dyn Files>,
+        task: &Task,
+    ) -> Result<Vec<Cell>, RunError> {
+        let scene = self.scene.take().or_else(|| {
+            script::run(&varied(&options.script, self.combination), Arc::clone(files), &task.child()).scene
+        });
+        // A script that ran once fails the second time only if it is cancelled or its files change.
+        let mut scene = scene.ok_or(if task.is_cancelled() { RunError::Cancelled } else { RunError::Script })?;
+        scene.look.background = background;
+        let pictures = views(&scene, &self.sights, framing, &options.sheet, task)?;
+        let label = |view: &String| {
+            if self.label.is_empty() {
+                view.clone()
+            } else if options.turntable.is_some() {
+                format!("{}  {view}", self.label)
+            } else {
+                self.label.clone()
+            }
+        };
+        Ok(pictures.into_iter().zip(&self.names).map(|(picture, view)| Cell { picture, label: label(view) }).collect())
+    }
 }
 
 /// The options of one combination.
@@ -123,7 +178,7 @@ fn varied(options: &Options, combination: &[(String, String)]) -> Options {
     let mut options = options.clone();
     for (name, value) in combination {
         match value.parse() {
-            Ok(seed) if name == "seed" => options.seed = seed,
+            Ok(seed) if name == "seed" => (options.seed, options.names_seed) = (seed, true),
             _ => drop(options.set.insert(name.clone(), value.clone())),
         }
     }
@@ -138,34 +193,27 @@ fn refused(options: &ContactOptions, outcome: &Outcome) -> Vec<Diagnostic> {
         for value in &v.values {
             if let Err(problem) = parameter.given(value) {
                 let message = format!("`--vary {}`: {}", v.name, problem.message);
-                wrong.push(Diagnostic::error(message).hint_opt(problem.hint));
+                let example = format!("as in `--vary {}={}`", v.name, parameter.default);
+                wrong.push(Diagnostic::error(message).hint(problem.hint.unwrap_or(example)));
             }
         }
     }
     wrong
 }
 
-/// The pictures of one run, with the names of their views.
-fn pictures(
-    options: &ContactOptions,
-    mut scene: Scene,
-    background: Background,
-    task: &Task,
-) -> Result<(Vec<Picture>, Vec<String>), RunError> {
-    scene.look.background = background;
-    let own = scene.views.first().copied().unwrap_or(View::Front);
-    let (sights, names): (Vec<Mat3>, Vec<String>) = match options.turntable {
+/// Where the pictures of one run look from, and what that is called.
+fn sights(options: &ContactOptions, scene: &Scene) -> (Vec<Mat3>, Vec<String>) {
+    match options.turntable {
         Some(n) => {
             let degrees = |k: u32| 360.0 * k as f32 / n as f32;
             let name = |k: u32| format!("{}°", (degrees(k) * 10.0).round() / 10.0);
             ((0..n).map(|k| camera::turned(degrees(k).to_radians())).collect(), (0..n).map(name).collect())
         }
         None => {
-            let view = options.view.unwrap_or(own);
+            let view = options.view.or(scene.views.first().copied()).unwrap_or(View::Front);
             (vec![camera::axes(view)], vec![view.text().to_owned()])
         }
-    };
-    Ok((views(&scene, &sights, None, &options.sheet, task)?, names))
+    }
 }
 
 /// How many cells the sheet will have, or that they are too many.

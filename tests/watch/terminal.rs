@@ -252,6 +252,40 @@ fn programs_get_one_object_per_event() {
 }
 
 #[test]
+fn a_draft_comes_first_where_there_is_much_hair() {
+    let hairy = "local head = coif.head()\nlocal hair = head:scalp():guides { count = 10, length = 2, step = 1 }:grow {}\n\
+                 :fill { strands = 6500, nodes = 3 }\nreturn coif.scene { head, hair, views = { 'front' } }";
+    let (dir, script) = folder(hairy);
+    for (more, wanted) in [
+        (&[][..], &["started", "draft", "finished", "exported"][..]),
+        (&["--no-draft"], &["started", "finished", "exported"]),
+    ] {
+        let arguments = ["watch", "style.lua", "--size", "64", "--strands", "none", "--json"];
+        let (mut process, lines) = piped(coif(dir.path(), &[&arguments[..], more].concat()), true);
+        let next = || -> serde_json::Value {
+            serde_json::from_str(&lines.recv_timeout(PATIENCE).expect("an event")).expect("an object")
+        };
+        assert_eq!(next()["event"], "watching");
+        for name in wanted {
+            let event = next();
+            assert_eq!(event["event"], *name, "{event}");
+            if *name == "draft" {
+                assert_eq!((event["members"].as_u64(), event["of"].as_u64()), (Some(6000), Some(6500)));
+                assert!(event["files"][0]["path"].as_str().unwrap().ends_with("style.png"));
+            }
+        }
+        // An error after it: the whole picture is what is stale.
+        std::fs::write(&script, "return 1").unwrap();
+        assert_eq!((next()["event"].clone(), next()["event"].clone()), ("started".into(), "failed".into()));
+        let stale = next();
+        assert_eq!((&stale["event"], &stale["draft"]), (&"stale".into(), &false.into()));
+        std::fs::write(&script, hairy).unwrap();
+        interrupt(&process);
+        assert_eq!(process.exit_code(), Some(130));
+    }
+}
+
+#[test]
 fn a_run_shows_its_picture_only_where_it_is_wanted() {
     let (dir, _script) = folder(GOOD);
     let shown = |arguments: &[&str]| {

@@ -14,6 +14,8 @@ pub const LINES: usize = 7;
 enum State {
     /// The first run is on.
     Waiting,
+    /// A draft is in place, the picture is being made.
+    Drafted,
     /// The picture is in place, the other files are being made.
     Exporting,
     /// Everything is in place.
@@ -28,6 +30,8 @@ pub struct Board {
     has_hint: bool,
     run: u64,
     good_run: Option<u64>,
+    /// What is in place is a draft.
+    is_draft: bool,
     state: State,
     cause: String,
     polling: Option<String>,
@@ -46,6 +50,7 @@ impl Board {
             has_hint,
             run: 0,
             good_run: None,
+            is_draft: false,
             state: State::Waiting,
             cause: String::new(),
             polling: None,
@@ -72,6 +77,11 @@ impl Board {
         self.good_run
     }
 
+    /// True when the picture in place is a draft.
+    pub fn is_draft(&self) -> bool {
+        self.is_draft
+    }
+
     /// True once after every change that is worth a new block.
     pub fn is_news(&mut self) -> bool {
         std::mem::take(&mut self.is_news)
@@ -85,9 +95,17 @@ impl Board {
         format!("run {run}: {}\n", if names.is_empty() { "started" } else { &self.cause })
     }
 
+    /// A draft of the picture is in place.
+    pub fn draft(&mut self, shown: Shown) -> String {
+        (self.state, self.good_run, self.is_draft, self.is_news) = (State::Drafted, Some(self.run), true, true);
+        self.exported.clear();
+        (self.summary, self.notes, self.picture) = (shown.summary, shown.notes, shown.picture);
+        format!("run {}: draft\n{}", self.run, self.summary)
+    }
+
     /// The picture is in place.
     pub fn picture(&mut self, shown: Shown) -> String {
-        (self.state, self.good_run, self.is_news) = (State::Exporting, Some(self.run), true);
+        (self.state, self.good_run, self.is_draft, self.is_news) = (State::Exporting, Some(self.run), false, true);
         self.exported.clear();
         (self.summary, self.notes, self.picture) = (shown.summary, shown.notes, shown.picture);
         format!("run {}: picture\n{}{}", self.run, self.summary, self.notes)
@@ -124,7 +142,7 @@ impl Board {
     pub fn block(&self, is_styled: bool) -> String {
         let mut out = String::new();
         let colour = match self.state {
-            State::Waiting | State::Exporting => "36",
+            State::Waiting | State::Drafted | State::Exporting => "36",
             State::Done => "32",
             State::Failed => "31",
         };
@@ -150,8 +168,12 @@ impl Board {
     fn state_text(&self) -> String {
         match (self.state, self.good_run) {
             (State::Waiting, _) => "running".to_owned(),
+            (State::Drafted, _) => "a draft is in place, the whole picture follows".to_owned(),
             (State::Exporting, _) => "the picture is up to date, the other files follow".to_owned(),
             (State::Done, _) => "up to date".to_owned(),
+            (State::Failed, Some(good)) if self.is_draft => {
+                format!("error; the picture is stale, a draft from run {good}")
+            }
             (State::Failed, Some(good)) => format!("error; the picture is stale, from run {good}"),
             (State::Failed, None) => "error; there is no picture yet".to_owned(),
         }
@@ -185,6 +207,24 @@ mod tests {
         }
         assert!(board.block(false).contains("12 strands"), "what is known of the stale picture stays");
         assert_eq!(board.take_picture(true), [1]);
+    }
+
+    #[test]
+    fn a_draft_is_called_one_until_the_picture_is_there() {
+        let mut board = Board::new(Path::new("bob.lua"), false);
+        board.started(1, &BTreeSet::new());
+        assert!(board.draft(shown("    hair  6 strands\n", "")).starts_with("run 1: draft\n"));
+        assert!(board.block(false).contains("a draft is in place") && board.is_draft() && board.is_news());
+        board.started(2, &BTreeSet::new());
+        board.failed(shown("", "error: again\n"));
+        assert!(board.block(false).contains("stale, a draft from run 1"), "{}", board.block(false));
+        board.started(3, &BTreeSet::new());
+        board.draft(shown("", ""));
+        board.picture(shown("    hair  12 strands\n", ""));
+        assert!(!board.block(false).contains("draft") && !board.is_draft());
+        board.started(4, &BTreeSet::new());
+        board.failed(shown("", "error: again\n"));
+        assert!(board.block(false).contains("stale, from run 3"));
     }
 
     #[test]

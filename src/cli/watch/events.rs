@@ -42,8 +42,8 @@ pub fn plain(event: &str) -> Value {
 }
 
 /// The files in place are those of an earlier run.
-pub fn stale(good_run: u64) -> Value {
-    json!({ "event": "stale", "good_run": good_run })
+pub fn stale(good_run: u64, is_draft: bool) -> Value {
+    json!({ "event": "stale", "good_run": good_run, "draft": is_draft })
 }
 
 /// A half of a run is done.
@@ -56,6 +56,11 @@ pub fn good(event: &str, report: &Report, written: &[Written]) -> Value {
     let files: Vec<Value> =
         written.iter().map(|f| json!({ "path": f.path.to_string_lossy(), "bytes": f.bytes })).collect();
     let mut object = json!({ "event": event, "stages": stages, "files": files });
+    if event == "draft" {
+        let thinned = report.outcome.thinned;
+        object["members"] = json!(thinned.members);
+        object["of"] = json!(thinned.of);
+    }
     if event == "finished" {
         object["parts"] = json!(report.figures);
         object["warnings"] = diagnostics(&report.outcome.diagnostics);

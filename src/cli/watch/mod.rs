@@ -17,12 +17,14 @@ use crate::script::{Disk, Files, show_all};
 use crate::task::Task;
 use crate::workbench::terminal::Protocol;
 use crate::workbench::watch::{Ended, Notice, Watch, WatchOptions};
-use crate::workbench::{self, Report, RunError, RunOptions, Written};
+use crate::workbench::{self, Report, RunError, RunOptions, Written, draft};
 
 use board::Board;
 
 /// What a run tells while it goes on.
 enum Told {
+    /// A draft of the picture is in place.
+    Draft(Shown),
     /// The picture is in place.
     Picture(Shown),
     /// The other files are in place too.
@@ -68,6 +70,7 @@ pub fn watch(arguments: &WatchArguments) -> u8 {
         progress: Arc::clone(&progress),
         protocol: arguments.run.show.filter(|_| !arguments.json).and_then(show::Show::protocol),
         timings: arguments.run.timings,
+        members: (!arguments.no_draft).then_some(draft::MEMBERS),
     };
     let mut out = Out {
         board: Board::new(&options.script.script, arguments.run.show.is_none() && show::is_capable()),
@@ -89,6 +92,8 @@ struct Runner<'a> {
     progress: Arc<Progress>,
     protocol: Option<Protocol>,
     timings: bool,
+    /// Members of a fill in a draft; none for no draft.
+    members: Option<usize>,
 }
 
 impl Runner<'_> {
@@ -106,9 +111,17 @@ impl Runner<'_> {
         ended
     }
 
-    /// The picture first, then the rest.
+    /// The picture first, perhaps after a draft, then the rest.
     fn halves(&self, task: &Task, files: Arc<dyn Files>, tell: &(dyn Fn(Told) + Sync)) -> Ended {
-        let mut report = workbench::preview(self.options, files, task);
+        let mut report = match self.members {
+            None => workbench::preview(self.options, files, task),
+            Some(members) => draft::preview_drafted(self.options, members, files, task, |sketch| {
+                if let Ok(shown) = self.shown(sketch, "draft") {
+                    tell(Told::Draft(shown));
+                    self.progress.begin();
+                }
+            }),
+        };
         let depends = report.outcome.dependencies.clone();
         let is_cut_short = match self.shown(&report, "finished") {
             Ok(shown) => {
@@ -137,10 +150,14 @@ impl Runner<'_> {
         let outcome = &report.outcome;
         let mut notes: String = outcome.log.iter().map(|line| format!("{line}\n")).collect();
         notes += &show_all(&outcome.diagnostics, &outcome.sources, is_styled());
+        if event == "draft" {
+            // The whole run says all of this again, of all of the hair.
+            notes.clear();
+        }
         match &report.written {
             Ok(written) => {
                 let summary = text::summary(report, written, self.timings && event == "finished");
-                let picture = if event == "finished" { self.picture(written, &summary, &notes) } else { vec![] };
+                let picture = if event == "exported" { vec![] } else { self.picture(written, &summary, &notes) };
                 Ok(Shown { summary, notes, picture, event: events::good(event, report, written) })
             }
             Err(RunError::Cancelled) => Err(None),
@@ -204,6 +221,7 @@ impl Out {
         // The block is drawn when there is something to see: a run that begins changes nothing yet.
         let lines = match notice {
             Notice::Started { run, changed } => self.board.started(run, &changed),
+            Notice::Told(Told::Draft(shown)) => self.board.draft(shown),
             Notice::Told(Told::Picture(shown)) => self.board.picture(shown),
             Notice::Told(Told::Exported(shown)) => self.board.exported(shown),
             Notice::Told(Told::Failed(shown)) => self.board.failed(shown),
@@ -226,6 +244,11 @@ impl Out {
                 self.board.started(run, &changed);
                 return print(&events::line(events::started(&changed), run));
             }
+            Notice::Told(Told::Draft(shown)) => {
+                let event = shown.event.clone();
+                self.board.draft(shown);
+                vec![event]
+            }
             Notice::Told(Told::Picture(shown)) => {
                 let event = shown.event.clone();
                 self.board.picture(shown);
@@ -235,7 +258,7 @@ impl Out {
             Notice::Told(Told::Failed(shown)) => {
                 let mut all = vec![shown.event.clone()];
                 self.board.failed(shown);
-                all.extend(self.board.good_run().map(events::stale));
+                all.extend(self.board.good_run().map(|run| events::stale(run, self.board.is_draft())));
                 all
             }
             Notice::Cancelled { .. } => vec![events::plain("cancelled")],

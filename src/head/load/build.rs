@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
 
-use super::{LoadError, MAX_NAMED};
+use super::{LoadError, MAX_NAMED, STEPS};
 use crate::geometry::{Group, Mesh};
-use crate::task::{Warned, Warning};
+use crate::task::{Task, Warned, Warning};
 
 /// Further than this from the origin, in cm, squares and products of places begin to leave the range of `f32`.
 const FAR: f64 = 1e7;
@@ -63,7 +63,13 @@ impl Parts {
     }
 
     /// A clean mesh: chosen groups only, turned and scaled to cm, without flat triangles and unused vertices.
-    pub fn finish(mut self, rotation: Mat3, scale: f64, chosen: &[String]) -> Result<Warned<Mesh>, LoadError> {
+    pub fn finish(
+        mut self,
+        rotation: Mat3,
+        scale: f64,
+        chosen: &[String],
+        task: &Task,
+    ) -> Result<Warned<Mesh>, LoadError> {
         if self.ignored > 0 {
             let message = format!("points and lines left out: `{}`", self.ignored);
             self.warnings.push(Warning::new(message).hint("only faces are loaded"));
@@ -84,6 +90,9 @@ impl Parts {
         let mut used = vec![false; self.positions.len()];
         let mut dropped = 0;
         for (t, triangle) in self.triangles.iter().enumerate() {
+            if t % STEPS == 0 {
+                task.check()?;
+            }
             if !keep[t] {
                 continue;
             }
@@ -107,6 +116,7 @@ impl Parts {
             self.warnings.push(Warning::new(format!("triangles without area dropped: `{dropped}` of {all}")));
         }
         // Renumber.
+        task.check()?;
         let mut mesh = Mesh::default();
         let mut vertex = vec![0; used.len()];
         for (v, _) in used.iter().enumerate().filter(|&(_, &used)| used) {
@@ -126,7 +136,9 @@ impl Parts {
             })
             .filter(|g| !g.triangles.is_empty())
             .collect();
+        task.check()?;
         self.attributes(&mut mesh, &used, rotation);
+        task.check()?;
         mesh.validate()?;
         Ok(Warned { value: mesh, warnings: self.warnings })
     }

@@ -3,6 +3,9 @@
 /// Why a mesh could not be loaded; [`LoadError::hint`] says what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LoadError {
+    /// Stopped from outside.
+    #[error(transparent)]
+    Cancelled(#[from] crate::task::Cancelled),
     /// No bytes, or nothing but spaces.
     #[error("the file is empty")]
     Empty,
@@ -252,7 +255,8 @@ impl LoadError {
             | Self::Gltf { .. }
             | Self::Reader { .. }
             | Self::NoTriangles { .. }
-            | Self::Mesh(_) => return None,
+            | Self::Mesh(_)
+            | Self::Cancelled(_) => return None,
         })
     }
 }

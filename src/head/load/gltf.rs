@@ -13,7 +13,7 @@ use super::build::Parts;
 use super::guard::{self, problem};
 use super::schema::Root;
 use super::{GltfProblem, LoadError, MAX_BYTES, MAX_VERTICES, Siblings, barrier, container, skin};
-use crate::task::Warning;
+use crate::task::{Task, Warning};
 
 /// The bytes of the buffers that geometry lies in; the others are empty.
 pub(super) struct Buffers<'a>(Vec<Cow<'a, [u8]>>);
@@ -36,18 +36,21 @@ impl fmt::Display for PrimitivePath {
 }
 
 /// Reads a glTF file.
-pub(super) fn read(bytes: &[u8], siblings: &dyn Siblings) -> Result<Parts, LoadError> {
+pub(super) fn read(bytes: &[u8], siblings: &dyn Siblings, task: &Task) -> Result<Parts, LoadError> {
     let (json, blob) = container::open(bytes)?;
     // Some exporters fill the chunk up with zeros instead of spaces.
     let json = &json[..json.len() - json.iter().rev().take_while(|&&b| b == 0).count()];
+    task.check()?;
     let root = guard::check(json)?;
+    task.check()?;
     let buffers = fill(&root, blob, siblings)?;
+    task.check()?;
     barrier::guarded("glTF", || {
         let document = gltf::Gltf::from_slice_without_validation(json).map_err(|e| match e {
             gltf::Error::Deserialize(e) => guard::json_error(&e),
             other => LoadError::Reader { format: "glTF", problem: other.to_string() },
         })?;
-        Reader { buffers: &buffers, parts: Parts::default(), left_over: 0 }.run(&document)
+        Reader { buffers: &buffers, parts: Parts::default(), left_over: 0, task }.run(&document)
     })
 }
 
@@ -88,6 +91,7 @@ struct Reader<'a> {
     parts: Parts,
     /// Indices beyond the last whole triangle.
     left_over: usize,
+    task: &'a Task,
 }
 
 impl Reader<'_> {
@@ -105,6 +109,7 @@ impl Reader<'_> {
 
         let mut open: Vec<Step> = shown.into_iter().rev().map(Step::Enter).collect();
         while let Some(step) = open.pop() {
+            self.task.check()?;
             match step {
                 Step::Enter(n) => {
                     open.push(Step::Leave(n, self.parts.triangles.len()));
@@ -147,6 +152,7 @@ impl Reader<'_> {
     fn mesh(&mut self, mesh: &gltf::Mesh<'_>, global: DMat4, joints: Option<&[DMat4]>) -> Result<(), LoadError> {
         let since = self.parts.triangles.len();
         for primitive in mesh.primitives() {
+            self.task.check()?;
             let first = self.parts.triangles.len();
             self.primitive(&primitive, global, joints, PrimitivePath(mesh.index(), primitive.index()))?;
             self.name(primitive.material().name(), first)?;

@@ -32,7 +32,7 @@ use std::io;
 use glam::Mat3;
 
 use crate::geometry::Mesh;
-use crate::task::Warned;
+use crate::task::{Task, Warned};
 
 pub use error::{GltfProblem, LoadError, ObjProblem};
 pub use unit::{Axis, LoadOptions, Unit, check_head_size};
@@ -43,6 +43,9 @@ pub const MAX_BYTES: u64 = 1 << 30;
 pub const MAX_VERTICES: u64 = 20_000_000;
 /// The most triangles that all groups may hold together; a triangle counts once for each of its groups.
 const MAX_NAMED: u64 = 50_000_000;
+
+/// Steps of a loop between two looks at the task.
+const STEPS: usize = 4096;
 
 /// A file that was read already.
 #[derive(Clone, Copy, Debug)]
@@ -109,17 +112,30 @@ pub struct Loaded {
 /// # Errors
 /// A [`LoadError`] with the place in the file; nothing is guessed or repaired.
 pub fn load(file: &FileBytes, options: &LoadOptions, siblings: &dyn Siblings) -> Result<Warned<Loaded>, LoadError> {
+    load_until(file, options, siblings, &Task::new())
+}
+
+/// The same, unless the task is cancelled: it is asked every few thousand lines, triangles and vertices.
+///
+/// # Errors
+/// As [`load`], and [`LoadError::Cancelled`].
+pub fn load_until(
+    file: &FileBytes,
+    options: &LoadOptions,
+    siblings: &dyn Siblings,
+    task: &Task,
+) -> Result<Warned<Loaded>, LoadError> {
     let rotation = options.rotation()?;
     if file.bytes.len() as u64 > MAX_BYTES {
         return Err(LoadError::TooMuch { what: "bytes".into(), count: file.bytes.len() as u64, limit: MAX_BYTES });
     }
     let format = format_of(file)?;
     let (parts, usual) = match format {
-        Format::Obj => (obj::read(file)?, Unit::Cm),
-        Format::Gltf => (gltf::read(file.bytes, siblings)?, Unit::M),
+        Format::Obj => (obj::read(file, task)?, Unit::Cm),
+        Format::Gltf => (gltf::read(file.bytes, siblings, task)?, Unit::M),
     };
     let unit = options.unit.unwrap_or(usual);
-    let built = parts.finish(rotation, unit.centimetres(), &options.groups)?;
+    let built = parts.finish(rotation, unit.centimetres(), &options.groups, task)?;
     let from_file = rotation * unit.centimetres() as f32;
     Ok(Warned { value: Loaded { mesh: built.value, format, unit, from_file }, warnings: built.warnings })
 }

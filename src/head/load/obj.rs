@@ -4,15 +4,15 @@
 //! are noted. What passes is written out again in its plainest form (no comments, no continuations, absolute indices,
 //! one kind of corner throughout) and read by `tobj`, which then cannot fail.
 
-use std::io::Write;
+use std::io::{self, BufRead, Read, Write};
 use std::rc::Rc;
 
 use glam::{Vec2, Vec3};
 
 use super::build::Parts;
-use super::{FileBytes, LoadError, MAX_VERTICES, ObjProblem, barrier};
+use super::{FileBytes, LoadError, MAX_VERTICES, ObjProblem, STEPS, barrier};
 use crate::geometry::polygon;
-use crate::task::Warning;
+use crate::task::{Task, Warning};
 
 /// The most corners a face may have: cutting takes the square of it.
 const MAX_CORNERS: usize = 4096;
@@ -61,10 +61,13 @@ struct Scan {
 }
 
 /// Reads an OBJ file.
-pub(super) fn read(file: &FileBytes) -> Result<Parts, LoadError> {
+pub(super) fn read(file: &FileBytes, task: &Task) -> Result<Parts, LoadError> {
     let mut scan = Scan { is_renamed: true, ..Scan::default() };
     let bytes = file.bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(file.bytes);
     for_each_line(bytes, |line, text| {
+        if line % STEPS == 0 {
+            task.check()?;
+        }
         scan.line(text, line).map_err(|problem| LoadError::Obj { line, problem })?;
         match scan.faces.last() {
             Some(face) if face.corners.len() > MAX_CORNERS => Err(LoadError::TooMuch {
@@ -83,8 +86,9 @@ pub(super) fn read(file: &FileBytes) -> Result<Parts, LoadError> {
             return Err(LoadError::TooMuch { what: what.into(), count: count as u64, limit: 3 * MAX_VERTICES });
         }
     }
+    task.check()?;
     scan.check_range(bytes)?;
-    scan.build()
+    scan.build(task)
 }
 
 /// Calls `each` with the number of the first line and the text of every logical line: a `\` at the end of a line
@@ -273,7 +277,7 @@ impl Scan {
         Ok(())
     }
 
-    fn build(mut self) -> Result<Parts, LoadError> {
+    fn build(mut self, task: &Task) -> Result<Parts, LoadError> {
         let mut parts = Parts { ignored: self.ignored, ..Parts::default() };
         self.warn(&mut parts.warnings);
         if self.faces.is_empty() {
@@ -281,7 +285,8 @@ impl Scan {
         }
         let (has_uv, has_normal) = (self.corners.iter().any(|c| c.uv != 0), self.corners.iter().any(|c| c.normal != 0));
         self.write_faces(has_uv, has_normal);
-        let read = barrier::guarded("OBJ", || self.parse())?;
+        let read = barrier::guarded("OBJ", || self.parse(task))?;
+        task.check()?;
         let bare_uv = Vec2::splat(BARE);
         let vector = |list: &[f32], i: usize| Vec3::new(list[3 * i], list[3 * i + 1], list[3 * i + 2]);
         let count = read.positions.len() / 3;
@@ -301,7 +306,10 @@ impl Scan {
             self.names.iter().map(|names| names.iter().map(|name| parts.group(name)).collect()).collect();
         let mut indices = &read.indices[..];
         let mut corners = Vec::new();
-        for face in &self.faces {
+        for (f, face) in self.faces.iter().enumerate() {
+            if f % STEPS == 0 {
+                task.check()?;
+            }
             let Some((polygon, rest)) = indices.split_at_checked(face.corners.len()) else {
                 return Err(LoadError::Reader { format: "OBJ", problem: "a face is missing".into() });
             };
@@ -358,16 +366,47 @@ impl Scan {
         }
     }
 
-    fn parse(&self) -> Result<tobj::Mesh, LoadError> {
+    fn parse(&self, task: &Task) -> Result<tobj::Mesh, LoadError> {
         let options = tobj::LoadOptions { single_index: true, ..tobj::LoadOptions::default() };
         let refused = |problem: String| LoadError::Reader { format: "OBJ", problem };
         let no_materials = |_: &std::path::Path| Ok((Vec::new(), Default::default()));
-        let (models, _) =
-            tobj::load_obj_buf(&mut &self.text[..], &options, no_materials).map_err(|e| refused(e.to_string()))?;
+        let mut text = Polled { text: &self.text, task };
+        let read = tobj::load_obj_buf(&mut text, &options, no_materials);
+        // The reader calls a cancelled text a bad one.
+        task.check()?;
+        let (models, _) = read.map_err(|e| refused(e.to_string()))?;
         match <[tobj::Model; 1]>::try_from(models) {
             Ok([model]) => Ok(model.mesh),
             Err(models) => Err(refused(format!("{} models for one", models.len()))),
         }
+    }
+}
+
+/// A text that ends with an error when the task is cancelled.
+struct Polled<'a> {
+    text: &'a [u8],
+    task: &'a Task,
+}
+
+/// Bytes that are handed out between two looks at the task.
+const PIECE: usize = 1 << 16;
+
+impl Read for Polled<'_> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let count = self.fill_buf()?.read(into)?;
+        self.consume(count);
+        Ok(count)
+    }
+}
+
+impl BufRead for Polled<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.task.check().map_err(io::Error::other)?;
+        Ok(&self.text[..self.text.len().min(PIECE)])
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.text = self.text.get(count..).unwrap_or_default();
     }
 }
 

@@ -13,7 +13,7 @@ use super::head::give;
 use super::overlay;
 use super::piece::Piece;
 use super::strands::Lock;
-use super::tuft::{Wig, ground, settle, tuft_error};
+use super::tuft::{Wig, ground, settled as settled_tufts, tuft_error};
 use crate::deform::{
     self, Bend, DeformError, Deformer, Hold, Lattice, Lift, Move, Pin, Pins, PointKind, Selection, Taper,
 };
@@ -742,7 +742,7 @@ fn tufts<V: Verb>(call: &Call) -> Result<Value> {
             *tuft = tuft_along(call, tuft, &to, &hold)?;
         }
     }
-    let all = settle(call, all, &this.head, false, 0.5)?;
+    let all = settled_tufts(call, all, &this.head, false, 0.5)?;
     Ok(give(Wig { tufts: Arc::new(all), ..Wig::clone(&this) }))
 }
 
@@ -850,7 +850,7 @@ pub fn carried_tufts(call: &Call, wig: &Wig, to: &Arc<Head>) -> Result<Wig> {
         let (id, stroke) = (tuft.id, stroke.moved_to(on.position));
         *tuft = Tuft { id, ..tuft.along(stroke) };
     }
-    let all = settle(call, all, to, true, 0.5)?;
+    let all = settled_tufts(call, all, to, true, 0.5)?;
     Ok(Wig { tufts: Arc::new(all), head: Arc::clone(to), palette: wig.palette.clone() })
 }
 

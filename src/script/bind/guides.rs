@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::super::call::{Call, Result};
+use super::super::limits::Need;
 use super::super::registry::{Entry, Getter, Noun};
 use super::head::give;
 use super::overlay;
@@ -83,6 +84,7 @@ fn grow_guides(call: &Call) -> Result<Value> {
         solid: Some(&this.area.head.solid),
         margin: options.margin,
     };
+    call.claim("", Need::strands(this.guides.roots.len(), this.guides.options.most_steps() + 1))?;
     let mut key = Digest::new("grow 1");
     key.key(this.area.head.key()).data(&this.guides.options).packed(&this.guides.roots, Root::bytes);
     key.data(&options.global).data(&locals).data(&local_of).floats(&[options.margin]);
@@ -104,6 +106,7 @@ fn grow_guides(call: &Call) -> Result<Value> {
         material: HairMaterial::default(),
         overlay: Arc::new(overlay),
         source: call.source(),
+        stands_for: 1.0,
     };
     Ok(give(lock))
 }

@@ -10,6 +10,7 @@ use glam::Vec3;
 
 use super::super::call::{Call, Result};
 use super::super::files::AccessError;
+use super::super::limits::Need;
 use super::super::registry::{Entry, Getter, Noun};
 use super::super::session::Session;
 use super::region::Area;
@@ -236,6 +237,7 @@ fn head(call: &Call) -> Result<Value> {
     {
         call.session.carries.borrow_mut().push((Arc::clone(&head), to));
     }
+    call.claim("", Need::triangles(head.mesh.triangles.len()))?;
     call.session.heads.borrow_mut().insert(key, Arc::clone(&head));
     Ok(Value::Handle(Handle::new(head)))
 }
@@ -335,11 +337,13 @@ fn loaded(
         call.problem_at(field(&e), message, e.hint())
     };
     let Warned { value: mesh, mut warnings } =
-        load::load(&FileBytes { name: &name, bytes }, options, &siblings).map_err(failed)?;
+        load::load_until(&FileBytes { name: &name, bytes }, options, &siblings, call.task()).map_err(failed)?;
     load::check_head_size(mesh.mesh.bounds(), mesh.unit).map_err(failed)?;
     let landmarks = landmarks.iter().map(|(name, &p)| (name.clone(), mesh.from_file * p)).collect();
     let stem = file.file_stem().map_or_else(|| "head".into(), |s| s.to_string_lossy().into_owned());
-    let head = Head::from_mesh(mesh.mesh, &stem, &landmarks).map_err(|e| head_error(call, path, &e))?;
+    call.room(path, Need::triangles(mesh.mesh.triangles.len()))?;
+    let head = Head::from_mesh_until(mesh.mesh, &stem, &landmarks, call.task());
+    let head = head.map_err(|e| head_error(call, path, &e))?;
     warnings.extend(head.warnings);
     Ok(Warned { value: head.value, warnings })
 }

@@ -1,6 +1,7 @@
 //! `coif.params`: what a person may turn without reading the script.
 
 use super::super::call::{Call, Result};
+use super::super::host::{Options, SetBy};
 use super::super::registry::{Entry, Shape};
 use crate::math::Colour;
 use crate::params::{Field, Kind, Params, Problem, Reader, Table, Value};
@@ -47,7 +48,7 @@ impl Parameter {
         let value = value.ok_or_else(|| Problem {
             path: String::new(),
             message: format!("`{text}` is not a {}", self.kind.text()),
-            hint: Some(format!("as in `--set {}={}`", self.name, self.default)),
+            hint: None,
         })?;
         check(self, &value)
     }
@@ -122,8 +123,11 @@ fn declare(call: &Call) -> Result<Value> {
         let hint = "every parameter has a name: { length = 45 }".to_owned();
         return Err(call.problem(format!("a parameter without a name: `{first}`"), Some(hint)));
     }
-    for (name, value) in &call.table().fields {
-        match parameter(name, value).and_then(|p| set(p, call.session.options.set.get(name))) {
+    // A Lua table has no order; the text of the call has.
+    let mut declarations: Vec<_> = call.table().fields.iter().map(|(n, v)| (call.place_of(n), n, v)).collect();
+    declarations.sort_by_key(|d| d.0);
+    for (_, name, value) in declarations {
+        match parameter(name, value).and_then(|p| set(p, &call.session.options)) {
             Ok(parameter) => {
                 values.fields.insert(name.clone(), parameter.value.clone());
                 let mut declared = call.session.parameters.borrow_mut();
@@ -181,12 +185,19 @@ fn parameter(name: &str, value: &Value) -> std::result::Result<Parameter, Vec<Pr
     Ok(Parameter { value: value.clone(), default: value, ..parameter })
 }
 
-/// Takes over what the command line says.
-fn set(parameter: Parameter, text: Option<&String>) -> std::result::Result<Parameter, Vec<Problem>> {
-    let Some(text) = text else { return Ok(parameter) };
+/// Takes over what was given from outside.
+fn set(parameter: Parameter, options: &Options) -> std::result::Result<Parameter, Vec<Problem>> {
+    let Some(text) = options.set.get(&parameter.name) else { return Ok(parameter) };
     let name = parameter.name.clone();
     let from_outside = |p: Problem| {
-        vec![Problem { path: name.clone(), message: format!("`--set {name}={text}`: {}", p.message), hint: p.hint }]
+        let default = &parameter.default;
+        let (given, example) = match options.set_by {
+            SetBy::Option => (format!("`--set {name}={text}`"), format!("as in `--set {name}={default}`")),
+            SetBy::Table => {
+                (format!("`{name}` in the table of parameters"), format!("as in `{{ {name} = {default} }}`"))
+            }
+        };
+        vec![Problem { path: name.clone(), message: format!("{given}: {}", p.message), hint: p.hint.or(Some(example)) }]
     };
     let value = parameter.given(text).map_err(from_outside)?;
     Ok(Parameter { value, ..parameter })

@@ -10,6 +10,7 @@ use super::head::give;
 use super::tuft::{TuftLook, Wig, ground, head_of, points_of, tuft_error};
 use crate::geometry::Mesh;
 use crate::head::Head;
+use crate::math::Digest;
 use crate::params::{Object, Table, Value};
 use crate::scene::{LockKind, TuftMaterial};
 use crate::tuft::{BunOptions, CapOptions, RingOptions};
@@ -93,8 +94,7 @@ fn head(call: &Call) -> Result<Arc<Head>> {
     head_of(call, given)
 }
 
-fn piece(call: &Call, kind: LockKind, mesh: Mesh, head: Arc<Head>, look: Option<TuftLook>) -> Value {
-    let mesh = Arc::new(mesh);
+fn piece(call: &Call, kind: LockKind, mesh: Arc<Mesh>, head: Arc<Head>, look: Option<TuftLook>) -> Value {
     let material = look.map_or_else(TuftMaterial::default, |l| l.0);
     give(Piece { kind, mesh, head, material, source: call.source() })
 }
@@ -126,8 +126,9 @@ fn cap(call: &Call) -> Result<Value> {
     if !is_given {
         options.border = hairline(&head);
     }
-    let made = options.build(&ground(&head)).map_err(|e| tuft_error(call, "border", &e))?;
-    let mesh = call.warned(made);
+    let mut key = Digest::new("cap 1");
+    key.key(head.key()).data(&options);
+    let mesh = call.memo(&key, || options.build(&ground(&head)).map_err(|e| tuft_error(call, "border", &e)))?;
     Ok(piece(call, LockKind::Cap, mesh, extras.head.unwrap_or(head), extras.material))
 }
 
@@ -135,7 +136,7 @@ fn bun(call: &Call) -> Result<Value> {
     let head = head(call)?;
     let (options, extras) = call.read_both::<BunOptions, PieceExtras>()?;
     let mesh = options.build().map_err(|e| tuft_error(call, "position", &e))?;
-    Ok(piece(call, LockKind::Bun, mesh, extras.head.unwrap_or(head), extras.material))
+    Ok(piece(call, LockKind::Bun, Arc::new(mesh), extras.head.unwrap_or(head), extras.material))
 }
 
 fn ring(call: &Call) -> Result<Value> {
@@ -153,5 +154,5 @@ fn ring(call: &Call) -> Result<Value> {
         all.uvs.extend(mesh.uvs);
         all.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + before)));
     }
-    Ok(piece(call, LockKind::Ring, all, Arc::clone(&first.head), extras.material))
+    Ok(piece(call, LockKind::Ring, Arc::new(all), Arc::clone(&first.head), extras.material))
 }

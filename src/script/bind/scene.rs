@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Affine3A;
 
 use super::super::call::{Call, Result};
+use super::super::limits::Need;
 use super::super::registry::{Entry, Noun};
 use super::clip::{MovingLocks, MovingStrands, StillLocks};
 use super::garment::Cloth;
@@ -16,7 +17,9 @@ use crate::geometry::{Clip, Mesh};
 use crate::head::{Head, HeadMotion};
 use crate::math::Colour;
 use crate::params::{Handle, Object, Value};
-use crate::scene::{Background, Body, Hair, Locks, Look, MeshMaterial, Motion, Part, Scene, Shading, Shown, View};
+use crate::scene::{
+    Background, Body, Hair, HairMaterial, Locks, Look, MeshMaterial, Motion, Part, Scene, Shading, Shown, View,
+};
 use crate::task::Warning;
 
 impl Object for Scene {
@@ -210,7 +213,10 @@ fn scene(call: &Call) -> Result<Value> {
         shown: Shown::default(),
         overlay: Arc::default(),
     };
-    for piece in &pieces {
+    for (i, piece) in pieces.iter().enumerate() {
+        if let Piece::Tufts(wig) = piece {
+            call.claim(&format!("[{}]", i + 1), Need::triangles(wig.tufts.triangle_count()))?;
+        }
         let (base, source, body, own) = piece.part(fields.skin);
         let mut part = Part { name: unique(base, &scene.parts), source, body, motion: own };
         if let (Some(motion), None, Some(_)) = (&motion, piece.motion(), piece.head()) {
@@ -302,7 +308,8 @@ fn hair(lock: &Lock) -> Hair {
     Hair {
         strands: Arc::clone(&lock.strands),
         guides: Arc::clone(&lock.guides),
-        material: lock.material.clone(),
+        // Fewer strands are drawn wider, so that the hair is as dense.
+        material: HairMaterial { width: lock.material.width * lock.stands_for, ..lock.material.clone() },
         overlay: Arc::clone(&lock.overlay),
     }
 }

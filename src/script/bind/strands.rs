@@ -3,12 +3,16 @@
 use std::sync::Arc;
 
 use super::super::call::{Call, Result};
+use super::super::limits::Need;
 use super::super::registry::{Entry, Getter, Noun};
 use super::head::give;
 use super::overlay;
 use super::region::Area;
 use crate::geometry::{Root, Strands};
-use crate::groom::{Deform, DeformOptions, Fill, FillOptions, NaturalQueue, count_inside, deform, fill};
+use crate::groom::{
+    Deform, DeformOptions, Fill, FillOptions, NaturalQueue, count_inside, deform, deformed_points, fill, member_nodes,
+};
+use crate::head::MOST_ROOTS;
 use crate::math::Digest;
 use crate::params::{Object, Table, Value};
 use crate::scene::{HairMaterial, Overlay};
@@ -28,6 +32,8 @@ pub struct Lock {
     pub overlay: Arc<Overlay>,
     /// Place in the script that made them.
     pub source: Arc<str>,
+    /// How many strands each of them stands for: 1, but in a draft more.
+    pub stands_for: f32,
 }
 
 impl Object for Lock {
@@ -121,6 +127,11 @@ fn natural(call: &Call) -> Result<Value> {
     let mut key = Digest::new("natural 1");
     key.key(this.area.head.key()).key(call.session.options.memo.content(&this.strands));
     key.data(&queue.domains()).flags(&which).floats(&[options.margin]).number(input.seed);
+    let points = match call.session.options.memo.get::<Strands>(key.finish()) {
+        Some((known, _)) => known.points.len(),
+        None => deformed_points(&input, call.task()).map_err(|e| call.groom(&e))?,
+    };
+    call.claim("", Need { points: points as u64, ..Need::strands(this.strands.count(), 0) })?;
     let sources = &this.strands.sources;
     let strands = call.memo_strands(&key, sources, || deform(&input, call.task()).map_err(|e| call.groom(&e)))?;
     let mut overlay = Overlay::clone(&this.overlay);
@@ -144,23 +155,46 @@ fn fill_strands(call: &Call) -> Result<Value> {
         None => &this.area,
     };
     let head = &area.head;
+    // The first roots of the order are a sparser fill of the same region.
+    let draft = call.session.options.draft;
+    let few = |count: usize| draft.map_or(count, |most| count.min(most.max(1)));
+    let nodes = member_nodes(&this.strands, &options);
+    // What is refused whatever the limits has words of its own.
+    if extras.density.is_none() && options.strands <= MOST_ROOTS {
+        call.claim("strands", Need::strands(few(options.strands), nodes))?;
+    }
     let roots = area.roots(call, ("strands", options.strands), extras.density, options.seed)?;
+    let few = few(roots.len());
+    if extras.density.is_some() {
+        call.claim("density", Need::strands(few, nodes))?;
+    }
     let partings = &this.area.partings;
     let separated = |a, b| partings.iter().any(|p| p.separates(a, b));
     let source = call.source();
+    let memo = &call.session.options.memo;
+    let key = |roots: &[Root]| {
+        let mut key = Digest::new("fill 1");
+        key.key(head.key()).key(memo.content(&this.strands));
+        key.data(&options).packed(roots, Root::bytes).data(partings);
+        key
+    };
+    if draft.is_some() {
+        let mut thinned = call.session.thinned.get();
+        thinned.members += few;
+        thinned.of += roots.len();
+        thinned.pending += if memo.has(key(&roots).finish()) { 0 } else { roots.len() };
+        call.session.thinned.set(thinned);
+    }
     let input = Fill {
         guides: &this.strands,
-        roots: &roots,
+        roots: &roots[..few],
         options: &options,
         separated: (!partings.is_empty()).then_some(&separated),
         solid: Some(&head.solid),
         source: &source,
     };
-    let mut key = Digest::new("fill 1");
-    key.key(head.key()).key(call.session.options.memo.content(&this.strands));
-    key.data(&options).packed(&roots, Root::bytes).data(partings);
     let made = || fill(&input, call.task()).map_err(|e| call.groom(&e));
-    let strands = call.memo_strands(&key, &[Arc::clone(&source)], made)?;
+    let strands = call.memo_strands(&key(input.roots), &[Arc::clone(&source)], made)?;
     let material = extras.material.map_or_else(|| this.material.clone(), |look| look.0);
     Ok(give(Lock {
         strands,
@@ -169,6 +203,7 @@ fn fill_strands(call: &Call) -> Result<Value> {
         material,
         overlay: Arc::clone(&this.overlay),
         source,
+        stands_for: roots.len() as f32 / few.max(1) as f32,
     }))
 }
 

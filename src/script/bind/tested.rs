@@ -4,22 +4,25 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use glam::Vec3;
 use mlua::Lua;
+use rayon::prelude::*;
 
 use super::super::call::{Call, Result};
 use super::super::files::tidy;
-use super::super::host::{self, Options};
+use super::super::host::{self, Options, SetBy};
 use super::super::registry::{Entry, Lookup, Noun};
 use super::super::session::{Raised, Session, session};
 use super::super::testing::Tests;
 use super::super::{Ending, trace};
 use super::head::{give, heads};
-use crate::geometry::{Bounds, Solid, Strands, measure};
+use crate::geometry::{Bounds, Bvh, Mesh, Solid, Strands, measure};
 use crate::groom::count_inside;
 use crate::head::{Head, roots};
 use crate::params::{Handle, Object, Table, Value};
-use crate::scene::{Body, Part, Scene};
+use crate::scene::{Body, Locks, Part, Scene};
 use crate::task::Task;
+use crate::tuft::{DipOptions, dips};
 
 /// How near to a strand a place of the scalp is covered, cm.
 const REACH: f32 = 1.0;
@@ -58,9 +61,9 @@ crate::params! {
 }
 
 crate::params! {
-    /// The fraction of the scalp that has a strand within some distance.
+    /// The fraction of the scalp that has hair within some distance: a strand, or a surface of stylised hair.
     pub struct CoverageFields("TestPart:coverage") {
-        /// How near a strand must come.
+        /// How near hair must come.
         reach: f32 = REACH, unit("cm"), range(0.01, 100.0);
     }
 }
@@ -96,9 +99,10 @@ impl Object for TestPart {
 }
 
 const FIGURES: &str = "Figures. Of hair: `strands`, `points`, `guides`, `mean_length`, `longest`, `shortest` (cm), `inside` (strands with a \
-     node or a segment inside the head), `coverage` (the fraction of the scalp within 1 cm of a strand), `symmetry` (mean \
-     distance in cm from the hair's mirror image to the hair). Of a surface: `points`, `triangles`. Of both: `min` and \
-     `max`, the corners of the bounding box.";
+     node or a segment inside the head, and tufts that lie too deep in it beyond their buried bases, `bury` left out), \
+     `coverage` (the fraction of the scalp within 1 cm of a strand or of a surface of stylised hair), `symmetry` (mean \
+     distance in cm from the hair's mirror image to the hair; where there are strands and locks, of those that have the \
+     greater). Of a surface: `points`, `triangles`, `tufts`. Of all: `min` and `max`, the corners of the bounding box.";
 
 /// Tested scenes and their parts.
 pub fn nouns() -> Vec<Noun> {
@@ -131,7 +135,7 @@ pub fn run(call: &Call) -> Result<Value> {
     let script = tidy(&call.session.options.folder().join(&fields.script));
     // Read here too: the test file's own limits hold, and a misspelt path is told at once.
     call.session.access.read(&script).map_err(|e| call.problem_at("script", e.to_string(), e.hint()))?;
-    let options = Options { script, set: BTreeMap::new(), ..call.session.options.clone() };
+    let options = Options { script, set: BTreeMap::new(), set_by: SetBy::Table, ..call.session.options.clone() };
     let options = match &fields.parameters {
         Some(parameters) => set(call, options, parameters)?,
         None => options,
@@ -170,7 +174,7 @@ fn set(call: &Call, mut options: Options, parameters: &Value) -> Result<Options>
                 if n.fract() != 0.0 || !(0.0..=9_007_199_254_740_992.0).contains(n) {
                     return wrong(format!("`{n}` is not a seed: a whole number, 0 or more"));
                 }
-                options.seed = *n as u64;
+                (options.seed, options.names_seed) = (*n as u64, true);
                 continue;
             }
             Value::Number(n) => n.to_string(),
@@ -272,8 +276,12 @@ fn strands(parts: &[Part]) -> Vec<&Strands> {
     parts.iter().filter_map(|p| if let Body::Hair(hair) = &p.body { Some(&*hair.strands) } else { None }).collect()
 }
 
+fn locks(parts: &[Part]) -> Vec<&Locks> {
+    parts.iter().filter_map(|p| if let Body::Locks(locks) = &p.body { Some(locks) } else { None }).collect()
+}
+
 fn figures(parts: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
-    let hair = strands(parts);
+    let (hair, locks) = (strands(parts), locks(parts));
     let mut bounds = Bounds::EMPTY;
     let (mut points, mut triangles, mut guides, mut tufts) = (0, 0, 0, 0);
     for part in parts {
@@ -308,15 +316,20 @@ fn figures(parts: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
     if !hair.is_empty() {
         let lengths: Vec<f32> = hair.iter().flat_map(|s| (0..s.count()).map(|i| s.length(i))).collect();
         let sum: f64 = lengths.iter().copied().map(f64::from).sum();
-        let inside: usize = heads.iter().map(|h| within(&h.solid, &hair)).sum();
         put("strands", lengths.len() as f64);
         put("guides", guides as f64);
         put("mean_length", plain((sum / lengths.len().max(1) as f64) as f32));
         put("longest", plain(lengths.iter().copied().fold(0.0, f32::max)));
         put("shortest", plain(lengths.iter().copied().reduce(f32::min).unwrap_or(0.0)));
-        put("inside", inside as f64);
-        put("symmetry", plain(measure::mirror_distance(&hair)));
-        if let Some(fraction) = covered(heads, &hair, REACH, task) {
+    }
+    if !hair.is_empty() || !locks.is_empty() {
+        let strands: usize = heads.iter().map(|h| within(&h.solid, &hair)).sum();
+        let tufts: usize = heads.iter().map(|h| sunk(h, &locks, task)).sum();
+        put("inside", (strands + tufts) as f64);
+        let surface = surface(&locks);
+        let of_locks = surface.as_ref().map_or(0.0, |s| s.mirror_distance());
+        put("symmetry", plain(measure::mirror_distance(&hair).max(of_locks)));
+        if let Some(fraction) = covered(heads, &hair, surface.as_ref(), REACH, task) {
             put("coverage", fraction);
         }
     }
@@ -336,14 +349,60 @@ fn within(solid: &Solid, hair: &[&Strands]) -> usize {
     hair.iter().map(|s| count_inside(s, solid)).sum()
 }
 
-/// The fraction of the scalp within `reach` cm of a strand; `None` without a head.
-fn covered(heads: &[&Arc<Head>], hair: &[&Strands], reach: f32, task: &Task) -> Option<f64> {
+/// How many tufts lie in the head by more than half their thickness beyond their buried bases.
+fn sunk(head: &Head, locks: &[&Locks], task: &Task) -> usize {
+    let ground = super::tuft::ground(head);
+    let count = |locks: &&Locks| {
+        let mut found = dips(&locks.tufts, &DipOptions::default(), &ground, task).unwrap_or_default();
+        found.dedup_by_key(|dip| dip.tuft);
+        found.len()
+    };
+    locks.iter().map(count).sum()
+}
+
+/// All surfaces of stylised hair.
+struct Surface {
+    places: Vec<Vec3>,
+    tree: Bvh,
+}
+
+/// The surfaces as one; none without triangles.
+fn surface(locks: &[&Locks]) -> Option<Surface> {
+    let mut all = Mesh::default();
+    for locks in locks {
+        let (mesh, first) = (&locks.mesh.mesh, all.positions.len() as u32);
+        all.positions.extend_from_slice(&mesh.positions);
+        all.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + first)));
+    }
+    (!all.triangles.is_empty()).then(|| Surface { tree: Bvh::new(&all.positions, &all.triangles), places: all.positions })
+}
+
+impl Surface {
+    /// Mean distance in cm from the mirror images of the corners to the surfaces.
+    fn mirror_distance(&self) -> f32 {
+        let off: Vec<f32> = self
+            .places
+            .par_iter()
+            .map(|p| {
+                let mirrored = Vec3::new(-p.x, p.y, p.z);
+                self.tree.closest(mirrored, f32::INFINITY).map_or(0.0, |c| c.position.distance(mirrored))
+            })
+            .collect();
+        let sum: f64 = off.iter().copied().map(f64::from).sum();
+        (sum / off.len().max(1) as f64) as f32
+    }
+}
+
+/// The fraction of the scalp within `reach` cm of hair; `None` without a head.
+fn covered(heads: &[&Arc<Head>], hair: &[&Strands], surface: Option<&Surface>, reach: f32, task: &Task) -> Option<f64> {
     let mut places = vec![];
     for head in heads {
         let found = roots(head, &head.scalp(), PLACES, PLACES_SEED, task).ok()?;
         places.extend(found.into_iter().map(|r| r.position));
     }
-    let hits = measure::covered(&places, hair, reach).into_iter().filter(|c| *c).count();
+    let strands = measure::covered(&places, hair, reach);
+    let under = |p: Vec3| surface.is_some_and(|s| s.tree.closest(p, reach).is_some());
+    let hits = places.iter().zip(strands).filter(|&(&p, near)| near || under(p)).count();
     (!places.is_empty()).then(|| hits as f64 / places.len() as f64)
 }
 
@@ -361,7 +420,8 @@ fn part_stats(call: &Call) -> Result<Value> {
 fn coverage(call: &Call) -> Result<Value> {
     let (this, fields) = (call.this::<TestPart>()?, call.read::<CoverageFields>()?);
     let part = this.tested.scene.parts.get(this.index..=this.index).unwrap_or(&[]);
-    let fraction = covered(&this.tested.standing(), &strands(part), fields.reach, call.task());
+    let surface = surface(&locks(part));
+    let fraction = covered(&this.tested.standing(), &strands(part), surface.as_ref(), fields.reach, call.task());
     fraction.map(Value::Number).ok_or_else(|| call.problem("there is no head whose scalp could be covered", None))
 }
 

@@ -5,15 +5,17 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::super::call::{Call, Result};
+use super::super::limits::Need;
+use super::super::memo::Kept;
 use super::super::registry::{Entry, Getter, Noun};
 use super::super::session::Raised;
 use super::head::{PointFields, give};
 use crate::geometry::Bounds;
 use crate::head::Head;
-use crate::math::Colour;
+use crate::math::{Colour, Digest};
 use crate::params::{Angle, Direction, FieldType, Kind, Object, Params, Reader, Table, Value};
 use crate::scene::TuftMaterial;
-use crate::task::Warning;
+use crate::task::{Warned, Warning};
 use crate::tuft::{DipOptions, FillOptions, Ground, Tuft, TuftError, TuftOptions, Tufts, dips, fill, lift};
 
 /// How often a profile's function is asked.
@@ -302,14 +304,56 @@ pub fn tuft_error(call: &Call, points: &str, error: &TuftError) -> Raised {
     call.problem_at(&path, error.to_string(), hint)
 }
 
+/// Tufts as they are kept: without their place in the script, and what there is to say of them.
+struct Made {
+    tufts: Vec<Tuft>,
+    /// Each about a field of the call, or about all of it.
+    warnings: Vec<(&'static str, Warning)>,
+}
+
+impl Kept for Made {
+    fn bytes(&self) -> usize {
+        self.tufts.iter().map(|t| size_of::<Tuft>() + 64 * t.stroke.points().len()).sum::<usize>()
+            + self.warnings.len() * 256
+    }
+}
+
+/// Tufts from the memo or made and settled, as of this call; their warnings told.
+fn kept(
+    call: &Call,
+    mut key: Digest,
+    head: &Head,
+    (lifts, allowed): (bool, f32),
+    make: impl FnOnce() -> Result<Made>,
+) -> Result<Tufts> {
+    key.key(head.key()).flags(&[lifts]).floats(&[allowed]);
+    let made = call.memo(&key, || settle(call, make()?, head, lifts, allowed).map(Warned::clean))?;
+    for (path, warning) in &made.warnings {
+        call.warn(path, warning.clone());
+    }
+    Ok(Tufts::new(made.tufts.clone(), &call.source()))
+}
+
+/// Tufts that were moved, lifted out of the head when asked; dips are told.
+pub fn settled(call: &Call, tufts: Tufts, head: &Head, lifts: bool, allowed: f32) -> Result<Tufts> {
+    let sources: Vec<(u64, u16)> = tufts.tufts.iter().map(|t| (t.id, t.source)).collect();
+    let made = settle(call, Made { tufts: tufts.tufts, warnings: vec![] }, head, lifts, allowed)?;
+    for (path, warning) in made.warnings {
+        call.warn(path, warning);
+    }
+    let own = |(tuft, (id, source)): (Tuft, (u64, u16))| Tuft { id, source, ..tuft };
+    Ok(Tufts { tufts: made.tufts.into_iter().zip(sources).map(own).collect(), sources: tufts.sources })
+}
+
 /// Looks for tufts that run through the head: lifts them out when asked, warns of the rest.
-pub fn settle(call: &Call, mut tufts: Tufts, head: &Head, lifts: bool, allowed: f32) -> Result<Tufts> {
+fn settle(call: &Call, mut made: Made, head: &Head, lifts: bool, allowed: f32) -> Result<Made> {
     let (ground, options) = (ground(head), DipOptions { allowed });
     if lifts {
         let lifted: std::result::Result<Vec<Tuft>, TuftError> =
-            tufts.tufts.par_iter().map(|t| lift(t, &options, &ground).map(|l| l.tuft)).collect();
-        tufts.tufts = lifted.map_err(|e| tuft_error(call, "stroke", &e))?;
+            made.tufts.par_iter().map(|t| lift(t, &options, &ground).map(|l| l.tuft)).collect();
+        made.tufts = lifted.map_err(|e| tuft_error(call, "stroke", &e))?;
     }
+    let tufts = Tufts::new(made.tufts, "");
     let mut found =
         dips(&tufts, &options, &ground, call.task()).map_err(|e| tuft_error(call, "stroke", &TuftError::from(e)))?;
     // The deepest first.
@@ -324,14 +368,15 @@ pub fn settle(call: &Call, mut tufts: Tufts, head: &Head, lifts: bool, allowed: 
         } else {
             "move the control points outward, write `lift = true` to have them moved, or `bury = true` to allow it"
         };
-        call.warn("", warning.hint(hint));
+        made.warnings.push(("", warning.hint(hint)));
     }
     if found.len() > TOLD {
         let more = found.len() - TOLD;
         let s = if more == 1 { "" } else { "s" };
-        call.warn("", Warning::new(format!("{more} more place{s} dip into the head, less deep than these")));
+        let warning = Warning::new(format!("{more} more place{s} dip into the head, less deep than these"));
+        made.warnings.push(("", warning));
     }
-    Ok(tufts)
+    Ok(Made { tufts: tufts.tufts, ..made })
 }
 
 /// The arguments of `coif.tuft` with places of the form { azimuth = , elevation = , height = } made points, and a
@@ -394,12 +439,13 @@ fn tuft(call: &Call) -> Result<Value> {
     let table = prepared(call, &head)?;
     let (options, extras) = call.read_both_from::<TuftOptions, TuftExtras>(&table)?;
     let head = extras.head.unwrap_or(head);
-    let made = options.build(&ground(&head)).map_err(|e| tuft_error(call, "stroke", &e))?;
-    for warning in made.warnings {
-        call.warn("stroke[1]", warning);
-    }
-    let tufts = Tufts::new(vec![made.value], &call.source());
-    let tufts = settle(call, tufts, &head, extras.lift, extras.dip)?;
+    let mut key = Digest::new("tuft 1");
+    key.data(&options);
+    let tufts = kept(call, key, &head, (extras.lift, extras.dip), || {
+        let made = options.build(&ground(&head)).map_err(|e| tuft_error(call, "stroke", &e))?;
+        let warnings = made.warnings.into_iter().map(|w| ("stroke[1]", w)).collect();
+        Ok(Made { tufts: vec![made.value], warnings })
+    })?;
     let palette = vec![extras.material.map_or_else(TuftMaterial::default, |look| look.0)];
     Ok(give(Wig { tufts: Arc::new(tufts), head, palette }))
 }
@@ -426,10 +472,13 @@ fn fill_between(call: &Call) -> Result<Value> {
             Tuft { colour, ..t.clone() }
         }));
     }
-    let made = fill(&chain, &options, &ground(&first.head));
-    let list = if extras.tufts.iter().all(|w| w.tufts.count() == 1) { "[]" } else { "" };
-    let made = call.warned(made.map_err(|e| tuft_error(call, list, &e))?);
-    let fresh = settle(call, Tufts::new(made, &call.source()), &first.head, extras.lift, extras.dip)?;
+    let mut key = Digest::new("fill of tufts 1");
+    key.data(&options).data(&chain);
+    let fresh = kept(call, key, &first.head, (extras.lift, extras.dip), || {
+        let list = if extras.tufts.iter().all(|w| w.tufts.count() == 1) { "[]" } else { "" };
+        let made = fill(&chain, &options, &ground(&first.head)).map_err(|e| tuft_error(call, list, &e))?;
+        Ok(Made { tufts: made.value, warnings: made.warnings.into_iter().map(|w| ("", w)).collect() })
+    })?;
     Ok(give(parents.joined(&Wig { tufts: Arc::new(fresh), ..parents.clone() })))
 }
 
@@ -475,6 +524,8 @@ fn rotated(call: &Call) -> Result<Value> {
 fn array(call: &Call) -> Result<Value> {
     let (this, fields) = (call.this::<Wig>()?, call.read::<ArrayFields>()?);
     let ground = ground(&this.head);
+    // Their meshes are made later; the coarsest has a dozen triangles.
+    call.claim("count", Need::triangles(12 * this.tufts.count() * fields.count as usize))?;
     let mut all = Tufts { tufts: vec![], sources: this.tufts.sources.clone() };
     for tuft in &this.tufts.tufts {
         let some = tuft.array(fields.count as usize, fields.axis.0, fields.step.radians, &ground);

@@ -14,7 +14,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::output::{Output, Written, write_all};
+use super::output::{Output, Written, write_until};
 use super::run::RunError;
 use crate::geometry::{Strands, curve};
 use crate::render::{SheetOptions, Speed, png};
@@ -190,7 +190,7 @@ fn compared(
     let (a, b) = (options.before.name(), options.after.name());
     let name = if a == b { format!("{a}.diff.png") } else { format!("{a}_{b}.diff.png") };
     let bytes = png::encode(&sheet, Speed::Balanced)?;
-    Ok((changes, write_all(out, &[Output { name, bytes: bytes.into() }])?))
+    Ok((changes, write_until(out, &[Output { name, bytes: bytes.into() }], task)?))
 }
 
 /// Notes a value that differs.
