@@ -76,9 +76,9 @@ pub struct Hair {
 }
 
 impl Part {
-    /// True for the surface of a head: what goes on below the picture is left out of it.
-    pub fn is_head(&self) -> bool {
-        matches!(self.body, Body::Mesh(..)) && (self.name == "head" || self.name.starts_with("head_"))
+    /// True for a garment, which is shown as far down as it goes; of any other surface, a bust, the lower end is left out.
+    pub fn is_garment(&self) -> bool {
+        matches!(self.body, Body::Mesh(..)) && (self.name == "garment" || self.name.starts_with("garment_"))
     }
 }
 

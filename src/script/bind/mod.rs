@@ -46,6 +46,7 @@ pub fn registry() -> Registry {
         deform::functions(),
         garment::functions(),
         material::functions(),
+        clip::functions(),
         scene::functions(),
     ];
     let nouns = [

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use mlua::Lua;
 use rayon::prelude::*;
 
@@ -16,11 +16,11 @@ use super::super::session::{Raised, Session, session};
 use super::super::testing::Tests;
 use super::super::{Ending, trace};
 use super::head::{give, heads};
-use crate::geometry::{Bounds, Bvh, Mesh, Solid, Strands, measure};
+use crate::geometry::{Bounds, Bvh, Clip, Mesh, Solid, Strands, measure};
 use crate::groom::count_inside;
 use crate::head::{Head, roots};
 use crate::params::{Handle, Object, Table, Value};
-use crate::scene::{Body, Locks, Part, Scene};
+use crate::scene::{Body, Locks, Motion, Part, Scene};
 use crate::task::Task;
 use crate::tuft::{DipOptions, dips};
 
@@ -57,6 +57,17 @@ crate::params! {
     pub struct SceneOf("Test:scene") {
         /// What `coif.scene` gave.
         scene: Arc<Scene>;
+        /// Of a scene that moves, which frame, from 1; the one that its still pictures show when left out.
+        frame: Option<usize>, range(1.0, 1e9);
+    }
+}
+
+crate::params! {
+    /// A scene that moves as it is at a frame; its figures are then those of that frame. Without it they are those of the
+    /// frame that still pictures show.
+    pub struct AtFields("TestScene:at") {
+        /// Which frame, from 1; past the end a loop begins anew, anything else stands still.
+        frame: usize, range(1.0, 1e9);
     }
 }
 
@@ -72,6 +83,8 @@ crate::params! {
 pub struct Style {
     /// What to run; none for a scene that is there already.
     wanted: Option<Options>,
+    /// Which frame, from 0; the one of still pictures when none is chosen.
+    frame: Option<usize>,
     tested: Mutex<Option<Arc<Tested>>>,
 }
 
@@ -81,8 +94,12 @@ impl Object for Style {
 
 /// A scene with the heads it may stand on.
 pub struct Tested {
-    /// The scene.
+    /// The scene, still, at the frame that is tested.
     pub scene: Arc<Scene>,
+    /// As the style made it.
+    moving: Arc<Scene>,
+    /// What the head's motion has done by then.
+    placed: Affine3A,
     heads: Vec<Arc<Head>>,
     /// Per part, and at the end of the whole.
     figures: Vec<OnceLock<Value>>,
@@ -108,6 +125,7 @@ const FIGURES: &str = "Figures. Of hair: `strands`, `points`, `guides`, `mean_le
 pub fn nouns() -> Vec<Noun> {
     let methods = vec![
         Entry::positional::<WithFields>("TestScene:with", "TestScene", with),
+        Entry::positional::<AtFields>("TestScene:at", "TestScene", at),
         Entry::plain("TestScene:stats", FIGURES, "table", scene_stats)
             .about("The figures of all parts together; see `TestPart:stats`.")
             .sealed("the table of figures"),
@@ -140,14 +158,15 @@ pub fn run(call: &Call) -> Result<Value> {
         Some(parameters) => set(call, options, parameters)?,
         None => options,
     };
-    Ok(give(Style { wanted: Some(options), tested: Mutex::default() }))
+    Ok(give(Style { wanted: Some(options), frame: None, tested: Mutex::default() }))
 }
 
 /// `Test:scene`.
 pub fn scene_of(call: &Call) -> Result<Value> {
     let fields: SceneOf = call.read()?;
-    let tested = Tested::new(fields.scene, heads(call.session));
-    Ok(give(Style { wanted: None, tested: Mutex::new(Some(Arc::new(tested))) }))
+    let frame = fields.frame.map(|f| f - 1);
+    let tested = Tested::new(fields.scene, heads(call.session), frame);
+    Ok(give(Style { wanted: None, frame, tested: Mutex::new(Some(Arc::new(tested))) }))
 }
 
 fn with(call: &Call) -> Result<Value> {
@@ -156,7 +175,15 @@ fn with(call: &Call) -> Result<Value> {
         return Err(call.problem("this scene is not of a style, so it has no parameters", None));
     };
     let wanted = Some(set(call, wanted.clone(), &fields.parameters)?);
-    Ok(give(Style { wanted, tested: Mutex::default() }))
+    Ok(give(Style { wanted, frame: this.frame, tested: Mutex::default() }))
+}
+
+fn at(call: &Call) -> Result<Value> {
+    let (this, fields) = (call.this::<Style>()?, call.read::<AtFields>()?);
+    let frame = Some(fields.frame - 1);
+    let known = this.tested.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let tested = known.map(|t| Arc::new(t.at(fields.frame - 1)));
+    Ok(give(Style { wanted: this.wanted.clone(), frame, tested: Mutex::new(tested) }))
 }
 
 /// The options with more parameters.
@@ -196,14 +223,14 @@ impl Style {
     fn tested(&self, lua: &Lua) -> mlua::Result<Arc<Tested>> {
         let mut tested = self.tested.lock().unwrap_or_else(PoisonError::into_inner);
         if let (None, Some(wanted)) = (&*tested, &self.wanted) {
-            *tested = Some(Arc::new(ran(lua, &*session(lua)?, wanted)?));
+            *tested = Some(Arc::new(ran(lua, &*session(lua)?, wanted, self.frame)?));
         }
         tested.clone().ok_or_else(|| mlua::Error::runtime("a scene without a style"))
     }
 }
 
 /// Runs a style in a VM and a session of its own.
-fn ran(lua: &Lua, outer: &Session, wanted: &Options) -> mlua::Result<Tested> {
+fn ran(lua: &Lua, outer: &Session, wanted: &Options, frame: Option<usize>) -> mlua::Result<Tested> {
     let inner = Rc::new(Session::new(wanted, outer.access.files(), [], &outer.task.child()));
     let outcome = host::run_session(&inner);
     outer.sources.borrow_mut().extend(outcome.sources);
@@ -219,16 +246,32 @@ fn ran(lua: &Lua, outer: &Session, wanted: &Options) -> mlua::Result<Tested> {
     match (outcome.ending, outcome.scene) {
         (Ending::Done, Some(scene)) => {
             diagnostics.into_iter().for_each(|d| outer.warn(d));
-            Ok(Tested::new(Arc::new(scene), heads(&inner)))
+            Ok(Tested::new(Arc::new(scene), heads(&inner), frame))
         }
         _ => Err(Raised(diagnostics).into()),
     }
 }
 
 impl Tested {
-    fn new(scene: Arc<Scene>, heads: Vec<Arc<Head>>) -> Self {
+    fn new(moving: Arc<Scene>, heads: Vec<Arc<Head>>, frame: Option<usize>) -> Self {
+        let frame = frame.unwrap_or(moving.shown.still);
+        let placed = moving.parts.iter().find_map(|p| match (&p.body, &p.motion) {
+            (Body::Mesh(..), Some(Motion::Rigid(clip))) => clip.at(frame).map(|t| **t),
+            _ => None,
+        });
+        let scene = if moving.timeline().is_some() { Arc::new(moving.at(frame)) } else { Arc::clone(&moving) };
         let figures = vec![OnceLock::new(); scene.parts.len() + 1];
-        Self { scene, heads, figures }
+        Self { scene, moving, placed: placed.unwrap_or(Affine3A::IDENTITY), heads, figures }
+    }
+
+    /// Some of the parts as seen from the head.
+    fn seen(&self, parts: &[Part]) -> Vec<Part> {
+        let back = Clip::new(1.0, vec![Arc::new(self.placed.inverse())]);
+        let still = |part: &Part| match self.placed == Affine3A::IDENTITY {
+            true => part.clone(),
+            false => Part { motion: Some(Motion::Rigid(back.clone())), ..part.clone() }.at(0),
+        };
+        parts.iter().map(still).collect()
     }
 
     /// The tested scene in a field: what `t:run` gave, or a scene of the test's own.
@@ -243,17 +286,23 @@ impl Tested {
                     .map_err(|e| Raised::inside(&e).unwrap_or_else(|| call.problem_at(path, e.to_string(), None)));
             }
             if let Some(scene) = handle.get::<Scene>() {
-                return Ok(Arc::new(Self::new(scene, heads(call.session))));
+                return Ok(Arc::new(Self::new(scene, heads(call.session), None)));
             }
         }
         let message = format!("expected a scene, got {} `{value}`", value.type_name());
         Err(call.problem_at(path, message, Some("as `t:run \"style.lua\" {}` gives one".into())))
     }
 
+    /// The same scene at another frame, from 0.
+    #[must_use]
+    pub fn at(&self, frame: usize) -> Self {
+        Self::new(Arc::clone(&self.moving), self.heads.clone(), Some(frame))
+    }
+
     /// Heads that stand in the scene; any that its hair can have grown on when none does.
     fn standing(&self) -> Vec<&Arc<Head>> {
         let is_in = |head: &&Arc<Head>| {
-            self.scene.parts.iter().any(|p| matches!(&p.body, Body::Mesh(mesh, _) if Arc::ptr_eq(mesh, &head.mesh)))
+            self.moving.parts.iter().any(|p| matches!(&p.body, Body::Mesh(mesh, _) if Arc::ptr_eq(mesh, &head.mesh)))
         };
         let found: Vec<&Arc<Head>> = self.heads.iter().filter(is_in).collect();
         if found.is_empty() { self.heads.iter().collect() } else { found }
@@ -261,7 +310,7 @@ impl Tested {
 
     /// Figures of some of the parts; `slot` is where they are kept.
     fn figures(&self, parts: &[Part], slot: usize, task: &Task) -> Value {
-        let compute = || figures(parts, &self.standing(), task);
+        let compute = || figures(parts, &self.seen(parts), &self.standing(), task);
         self.figures.get(slot).map_or_else(compute, |kept| kept.get_or_init(compute).clone())
     }
 }
@@ -280,8 +329,9 @@ fn locks(parts: &[Part]) -> Vec<&Locks> {
     parts.iter().filter_map(|p| if let Body::Locks(locks) = &p.body { Some(locks) } else { None }).collect()
 }
 
-fn figures(parts: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
-    let (hair, locks) = (strands(parts), locks(parts));
+/// `seen` are the parts as seen from the head.
+fn figures(parts: &[Part], seen: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
+    let (hair, locks) = (strands(seen), locks(seen));
     let mut bounds = Bounds::EMPTY;
     let (mut points, mut triangles, mut guides, mut tufts) = (0, 0, 0, 0);
     for part in parts {
@@ -374,7 +424,8 @@ fn surface(locks: &[&Locks]) -> Option<Surface> {
         all.positions.extend_from_slice(&mesh.positions);
         all.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + first)));
     }
-    (!all.triangles.is_empty()).then(|| Surface { tree: Bvh::new(&all.positions, &all.triangles), places: all.positions })
+    (!all.triangles.is_empty())
+        .then(|| Surface { tree: Bvh::new(&all.positions, &all.triangles), places: all.positions })
 }
 
 impl Surface {
@@ -420,8 +471,9 @@ fn part_stats(call: &Call) -> Result<Value> {
 fn coverage(call: &Call) -> Result<Value> {
     let (this, fields) = (call.this::<TestPart>()?, call.read::<CoverageFields>()?);
     let part = this.tested.scene.parts.get(this.index..=this.index).unwrap_or(&[]);
-    let surface = surface(&locks(part));
-    let fraction = covered(&this.tested.standing(), &strands(part), surface.as_ref(), fields.reach, call.task());
+    let part = this.tested.seen(part);
+    let surface = surface(&locks(&part));
+    let fraction = covered(&this.tested.standing(), &strands(&part), surface.as_ref(), fields.reach, call.task());
     fraction.map(Value::Number).ok_or_else(|| call.problem("there is no head whose scalp could be covered", None))
 }
 
