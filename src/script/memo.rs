@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::deform::Fitted;
+use crate::garment::Garment;
 use crate::geometry::{Mesh, Root, Strands};
 use crate::groom::Moving;
 use crate::head::Head;
@@ -37,6 +39,18 @@ impl Kept for Moving {
 impl Kept for Head {
     fn bytes(&self) -> usize {
         Self::bytes(self)
+    }
+}
+
+impl Kept for Garment {
+    fn bytes(&self) -> usize {
+        self.mesh.bytes()
+    }
+}
+
+impl Kept for Fitted {
+    fn bytes(&self) -> usize {
+        self.mesh.bytes() + self.lattices.len() * 2048
     }
 }
 

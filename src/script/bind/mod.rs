@@ -5,7 +5,9 @@
 
 mod clip;
 mod constants;
+mod deform;
 mod domain;
+mod garment;
 mod golden;
 mod guides;
 mod head;
@@ -41,6 +43,8 @@ pub fn registry() -> Registry {
         domain::functions(),
         tuft::functions(),
         piece::functions(),
+        deform::functions(),
+        garment::functions(),
         material::functions(),
         clip::functions(),
         scene::functions(),
@@ -52,6 +56,8 @@ pub fn registry() -> Registry {
         domain::nouns(),
         tuft::nouns(),
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
+        deform::nouns(),
+        vec![garment::noun()],
         tested::nouns(),
     ];
     Registry {
