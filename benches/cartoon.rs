@@ -12,12 +12,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use coif::export::StrandForm;
+use coif::export::{Format, StrandForm};
 use coif::render::SheetOptions;
 use coif::scene::View;
 use coif::script::{Disk, Options, Origin};
 use coif::task::Task;
-use coif::workbench::{self, Report, RunOptions};
+use coif::workbench::{self, Films, Report, RunOptions};
 
 const SCRIPTS: [(&str, &str); 2] = [
     ("twin_tails", include_str!("../examples/cartoon/twin_tails.lua")),
@@ -58,6 +58,8 @@ fn main() {
             strands: StrandForm::None,
             tolerance: 0.05,
             guides: false,
+            formats: vec![Format::Glb],
+            films: Films { moving: true, turntable: false },
             count_inside: false,
             triangles: None,
         };

@@ -62,6 +62,7 @@ fn scene() -> Scene {
         look: Look::default(),
         placement: Affine3A::IDENTITY,
         shown: Shown::default(),
+        overlay: Arc::default(),
     }
 }
 

@@ -88,6 +88,7 @@ fn scene(count: usize) -> Scene {
         look: Look::default(),
         placement: Affine3A::IDENTITY,
         shown: Shown::default(),
+        overlay: Arc::default(),
     }
 }
 

@@ -18,6 +18,7 @@ pub mod head;
 pub mod animate;
 pub mod deform;
 pub mod dynamics;
+pub mod garment;
 pub mod groom;
 pub mod tuft;
 

@@ -229,6 +229,9 @@ coif.domain = {}
 ---@class coif.material
 coif.material = {}
 
+---@class coif.garment
+coif.garment = {}
+
 ---A parameter, by the name that it shall have.
 ---@class (exact) coif.params.parameter
 ---@field [integer] number|boolean|string|coif.Point # What it is unless set from outside: a number, true or false, a text, `"#rrggbb"`, a point.
@@ -258,6 +261,7 @@ function coif.params(fields) end
 ---@field forward? "x"|"y"|"z"|"-x"|"-y"|"-z" # The axis of the file that the face looks along; "z", or "-y" when z is up.
 ---@field groups? string[] # Only these groups, objects or materials of the file; everything when left out.
 ---@field landmarks? table<string, coif.Point> # Landmarks by name, in the file's own axes and unit, instead of those found from the shape.
+---@field carry? boolean # What `--head FILE` does: false grows the style on that head instead of this one; true grows it on this head and carries it to that one, which is right for a style in plain coordinates. [default false]
 
 ---The head that hair grows on: the built-in mannequin, or a mesh from a file. `--head FILE` on the command line
 ---takes the place of either.
@@ -551,6 +555,133 @@ function coif.path(fields) end
 ---@param fields coif.animate.fields
 ---@return coif.LocksClip
 function coif.animate(fields) end
+---What `coif.lattice` takes.
+---@class (exact) coif.lattice.fields
+---@field around? coif.Garment|coif.Strands|coif.Tufts|coif.Piece|coif.Head|coif.Box|nil # What it goes around: a garment, hair, a head, or a box.
+---@field margin? number # How much larger it is than that. [cm; 0 to 100; default 0.5]
+---@field corner? coif.Point # A corner, instead of `around`. [cm]
+---@field edges? coif.Point[] # The three edges from that corner, right-handed.
+---@field divisions? number[] # Into how many pieces each edge is divided: control points go from 0 to these. [default { 4, 4, 4 }]
+
+---A lattice of control points: a box around what is to be moved, or any parallelepiped.
+---@param fields? coif.lattice.fields
+---@return coif.Lattice
+function coif.lattice(fields) end
+
+---The points: `{ at = { 0, 0, 0 } }` stays, `{ at = { 0, 0, 5 }, to = { 0, 1, 6 } }` is moved.
+---@class (exact) coif.pins.points
+---@field at coif.Point # Where it is. [cm]
+---@field to? coif.Point # Where it goes. [cm]
+---@field name? string # A name, to mark it by later.
+---@field kind? "overall"|"feature"|"fixed" # What it is for; `feature` with a target and `fixed` without one when left out. Any other kind without a target rides along.
+
+---What `coif.pins` takes.
+---@class (exact) coif.pins.fields
+---@field [integer] coif.pins.points # The points: `{ at = { 0, 0, 0 } }` stays, `{ at = { 0, 0, 5 }, to = { 0, 1, 6 } }` is moved.
+---@field power? number # How much more a near point counts than a far one: the exponent of the affinity. [0.5 to 8; default 2]
+
+---Fixed points and operated points: every operated point lands on its target, no fixed point moves, and between
+---them each place follows those that are near.
+---@param fields coif.pins.fields
+---@return coif.Pins
+function coif.pins(fields) end
+
+---What `coif.garment.skirt` takes.
+---@class (exact) coif.garment.skirt.fields
+---@field waist? number # Girth of the waistband. [cm; 30 to 200; default 57]
+---@field hip? number # Girth around the hip. [cm; 40 to 250; default 88]
+---@field hem? number # Girth of the hem, as a tape around its folds reads it. [cm; 40 to 800; default 170]
+---@field length? number # From the waist to the hem. [cm; 15 to 110; default 58]
+---@field folds? number # How many folds; 0 for none. [whole; 0 to 60; default 13]
+---@field fold_depth? number # How deep the folds are at the hem. [cm; 0 to 20; default 3.2]
+---@field colour? coif.Colour # Its colour. [default "#6f83a8"]
+---@field roughness? number # 0 mirror to 1 chalk. [0 to 1; default 0.85]
+
+---A skirt with a waistband.
+---@param fields? coif.garment.skirt.fields
+---@return coif.Garment
+function coif.garment.skirt(fields) end
+
+---What `coif.garment.dress` takes.
+---@class (exact) coif.garment.dress.fields
+---@field bust? number # Girth around the bust. [cm; 50 to 200; default 84]
+---@field waist? number # Girth around the waist. [cm; 40 to 200; default 57]
+---@field hip? number # Girth around the hip. [cm; 50 to 250; default 90]
+---@field hem? number # Girth of the hem, as a tape around its folds reads it. [cm; 50 to 800; default 210]
+---@field length? number # From the waist to the hem. [cm; 20 to 98; default 56]
+---@field folds? number # How many folds; 0 for none. [whole; 0 to 60; default 14]
+---@field fold_depth? number # How deep the folds are at the hem. [cm; 0 to 20; default 3.5]
+---@field neckline? number # How low the neckline is cut in front. [cm; 0 to 16; default 8]
+---@field colour? coif.Colour # Its colour. [default "#6f83a8"]
+---@field roughness? number # 0 mirror to 1 chalk. [0 to 1; default 0.85]
+
+---A sleeveless dress: a close bodice, and a skirt that falls in folds.
+---@param fields? coif.garment.dress.fields
+---@return coif.Garment
+function coif.garment.dress(fields) end
+
+---What `coif.garment.shirt` takes.
+---@class (exact) coif.garment.shirt.fields
+---@field bust? number # Girth around the bust. [cm; 50 to 200; default 88]
+---@field waist? number # Girth around the waist. [cm; 40 to 200; default 66]
+---@field hip? number # Girth around the hip. [cm; 50 to 200; default 92]
+---@field length? number # From the neck to the hem. [cm; 40 to 90; default 63]
+---@field sleeves? number # Length of the sleeves; 0 leaves them out. [cm; 0 to 62; default 24]
+---@field spread? number # How far the sleeves stand off the body. [degrees; 15 to 85; default 38]
+---@field neckline? number # How low the neckline is cut in front. [cm; 0 to 16; default 4.5]
+---@field colour? coif.Colour # Its colour. [default "#6f83a8"]
+---@field roughness? number # 0 mirror to 1 chalk. [0 to 1; default 0.85]
+
+---A shirt with sleeves.
+---@param fields? coif.garment.shirt.fields
+---@return coif.Garment
+function coif.garment.shirt(fields) end
+
+---What `coif.garment.trousers` takes.
+---@class (exact) coif.garment.trousers.fields
+---@field waist? number # Girth of the waistband. [cm; 40 to 200; default 62]
+---@field hip? number # Girth around the hip. [cm; 50 to 200; default 92]
+---@field hem? number # Girth of a leg at its hem. [cm; 20 to 120; default 38]
+---@field knee? number # Girth of a leg at the knee. [cm; 25 to 120; default 42]
+---@field length? number # From the waist to the hem. [cm; 38 to 105; default 96]
+---@field colour? coif.Colour # Its colour. [default "#6f83a8"]
+---@field roughness? number # 0 mirror to 1 chalk. [0 to 1; default 0.85]
+
+---Trousers with a waistband.
+---@param fields? coif.garment.trousers.fields
+---@return coif.Garment
+function coif.garment.trousers(fields) end
+
+---What `coif.garment.form` takes.
+---@class (exact) coif.garment.form.fields
+---@field bust? number # Girth around the bust. [cm; 50 to 200; default 84]
+---@field waist? number # Girth around the waist. [cm; 35 to 200; default 60]
+---@field hip? number # Girth around the hip. [cm; 50 to 200; default 88]
+---@field stand? boolean # False leaves the stand out. [default true]
+---@field colour? coif.Colour # Its colour. [default "#6f83a8"]
+---@field roughness? number # 0 mirror to 1 chalk. [0 to 1; default 0.85]
+
+---A dress form: a woman's torso, closed, on a stand.
+---@param fields? coif.garment.form.fields
+---@return coif.Garment
+function coif.garment.form(fields) end
+
+---What `coif.garment.load` takes.
+---@class (exact) coif.garment.load.fields
+---@field file string # The file, beside the script or below its folder.
+---@field unit? "mm"|"cm"|"dm"|"m"|"in"|"ft" # What one unit of the file is; metres for glTF, centimetres for OBJ when left out.
+---@field up? "x"|"y"|"z"|"-x"|"-y"|"-z" # The axis of the file that points up; "y" when left out.
+---@field forward? "x"|"y"|"z"|"-x"|"-y"|"-z" # The axis of the file that points to the front; "z", or "-y" when z is up.
+---@field groups? string[] # Only these groups, objects or materials; everything when left out.
+---@field at? coif.Point # How far it is moved. [cm; default { 0, 0, 0 }]
+---@field colour? coif.Colour # Its colour. [default "#6f83a8"]
+---@field roughness? number # 0 mirror to 1 chalk. [0 to 1; default 0.85]
+
+---A garment, or any other mesh, from a file: OBJ, glTF or GLB. Its groups, objects and materials are its parts. It
+---stays where it is in the file, but for `at`.
+---@param fields coif.garment.load.fields
+---@return coif.Garment
+function coif.garment.load(fields) end
 
 ---What `coif.material.hair` takes.
 ---@class (exact) coif.material.hair.fields
@@ -696,6 +827,51 @@ function Head:parting(fields) end
 ---@param fields coif.Head.motion.fields
 ---@return coif.Motion
 function Head:motion(fields) end
+
+---What `Head:deform` takes.
+---@class (exact) coif.Head.deform.fields
+---@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+
+---Moves it by lattices and pins, one after the other.
+---@param fields coif.Head.deform.fields
+---@return coif.Head
+function Head:deform(fields) end
+
+---What `Head:bend` takes.
+---@class (exact) coif.Head.bend.fields
+---@field angle number # By how much at the far end. [degrees; -180 to 180]
+---@field towards? coif.Direction # Which way the far end goes. [default { 0, 0, 1 }]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+
+---Bends it, as a whole: what lies at the far end turns by the angle, in between by a part of it.
+---@param fields coif.Head.bend.fields
+---@return coif.Head
+function Head:bend(fields) end
+
+---What `Head:taper` takes.
+---@class (exact) coif.Head.taper.fields
+---@field width number # Width at the far end as a multiple of what it was: below 1 narrows, above 1 flares. [0.01 to 10]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field about? coif.Point # The axis that it narrows towards goes through this place; the middle when left out. [cm]
+
+---Makes it narrower, or wider (flared), towards the far end.
+---@param fields coif.Head.taper.fields
+---@return coif.Head
+function Head:taper(fields) end
+
+---What `Head:lift` takes.
+---@class (exact) coif.Head.lift.fields
+---@field by number # How far at the far end. [cm; -100 to 100]
+---@field towards? coif.Direction # Which way. [default { 0, 1, 0 }]
+---@field along? coif.Direction # From the near end to the far end; as `towards` when left out.
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+
+---Lifts it: what lies at the far end is moved by the whole distance, what lies at the near end stays.
+---@param fields coif.Head.lift.fields
+---@return coif.Head
+function Head:lift(fields) end
 
 ---A line on the scalp that strands never blend across.
 ---@class coif.Parting
@@ -847,6 +1023,73 @@ function Strands:material(material) end
 ---@return table<string, any>
 function Strands:stats() end
 
+---What `Strands:deform` takes.
+---@class (exact) coif.Strands.deform.fields
+---@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Moves it by lattices and pins, one after the other.
+---@param fields coif.Strands.deform.fields
+---@return coif.Strands
+function Strands:deform(fields) end
+
+---What `Strands:bend` takes.
+---@class (exact) coif.Strands.bend.fields
+---@field angle number # By how much at the far end. [degrees; -180 to 180]
+---@field towards? coif.Direction # Which way the far end goes. [default { 0, 0, 1 }]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Bends it, as a whole: what lies at the far end turns by the angle, in between by a part of it.
+---@param fields coif.Strands.bend.fields
+---@return coif.Strands
+function Strands:bend(fields) end
+
+---What `Strands:taper` takes.
+---@class (exact) coif.Strands.taper.fields
+---@field width number # Width at the far end as a multiple of what it was: below 1 narrows, above 1 flares. [0.01 to 10]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field about? coif.Point # The axis that it narrows towards goes through this place; the middle when left out. [cm]
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Makes it narrower, or wider (flared), towards the far end.
+---@param fields coif.Strands.taper.fields
+---@return coif.Strands
+function Strands:taper(fields) end
+
+---What `Strands:lift` takes.
+---@class (exact) coif.Strands.lift.fields
+---@field by number # How far at the far end. [cm; -100 to 100]
+---@field towards? coif.Direction # Which way. [default { 0, 1, 0 }]
+---@field along? coif.Direction # From the near end to the far end; as `towards` when left out.
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Lifts it: what lies at the far end is moved by the whole distance, what lies at the near end stays.
+---@param fields coif.Strands.lift.fields
+---@return coif.Strands
+function Strands:lift(fields) end
+
+---What `Strands:carry` takes.
+---@class (exact) coif.Strands.carry.fields
+---@field to coif.Head # The other head.
+
+---Carries it to another head: the smooth motion through the landmarks of both heads moves every point, roots are
+---laid on the new skin, and what then lies in the new head is moved out.
+---@param fields coif.Strands.carry.fields
+---@return coif.Strands
+function Strands:carry(fields) end
+
 ---Strands in motion: frames at equal distances in time. What takes strands takes them frame by frame.
 ---@class coif.StrandsClip
 ---@field count number # How many strands.
@@ -908,6 +1151,63 @@ function StrandsClip:material(material) end
 ---@return table<string, any>
 function StrandsClip:stats() end
 
+---What `StrandsClip:deform` takes.
+---@class (exact) coif.StrandsClip.deform.fields
+---@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Moves it by lattices and pins, one after the other.
+---@param fields coif.StrandsClip.deform.fields
+---@return coif.StrandsClip
+function StrandsClip:deform(fields) end
+
+---What `StrandsClip:bend` takes.
+---@class (exact) coif.StrandsClip.bend.fields
+---@field angle number # By how much at the far end. [degrees; -180 to 180]
+---@field towards? coif.Direction # Which way the far end goes. [default { 0, 0, 1 }]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Bends it, as a whole: what lies at the far end turns by the angle, in between by a part of it.
+---@param fields coif.StrandsClip.bend.fields
+---@return coif.StrandsClip
+function StrandsClip:bend(fields) end
+
+---What `StrandsClip:taper` takes.
+---@class (exact) coif.StrandsClip.taper.fields
+---@field width number # Width at the far end as a multiple of what it was: below 1 narrows, above 1 flares. [0.01 to 10]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field about? coif.Point # The axis that it narrows towards goes through this place; the middle when left out. [cm]
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Makes it narrower, or wider (flared), towards the far end.
+---@param fields coif.StrandsClip.taper.fields
+---@return coif.StrandsClip
+function StrandsClip:taper(fields) end
+
+---What `StrandsClip:lift` takes.
+---@class (exact) coif.StrandsClip.lift.fields
+---@field by number # How far at the far end. [cm; -100 to 100]
+---@field towards? coif.Direction # Which way. [default { 0, 1, 0 }]
+---@field along? coif.Direction # From the near end to the far end; as `towards` when left out.
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Lifts it: what lies at the far end is moved by the whole distance, what lies at the near end stays.
+---@param fields coif.StrandsClip.lift.fields
+---@return coif.StrandsClip
+function StrandsClip:lift(fields) end
+
 ---Stylised hair in motion: frames of its surface at equal distances in time.
 ---@class coif.LocksClip
 ---@field frames number # How many frames.
@@ -915,6 +1215,51 @@ function StrandsClip:stats() end
 ---@field seconds number # How long it lasts.
 ---@field loops boolean # True when the first frame follows the last.
 local LocksClip = {}
+
+---What `LocksClip:deform` takes.
+---@class (exact) coif.LocksClip.deform.fields
+---@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+
+---Moves it by lattices and pins, one after the other.
+---@param fields coif.LocksClip.deform.fields
+---@return coif.LocksClip
+function LocksClip:deform(fields) end
+
+---What `LocksClip:bend` takes.
+---@class (exact) coif.LocksClip.bend.fields
+---@field angle number # By how much at the far end. [degrees; -180 to 180]
+---@field towards? coif.Direction # Which way the far end goes. [default { 0, 0, 1 }]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+
+---Bends it, as a whole: what lies at the far end turns by the angle, in between by a part of it.
+---@param fields coif.LocksClip.bend.fields
+---@return coif.LocksClip
+function LocksClip:bend(fields) end
+
+---What `LocksClip:taper` takes.
+---@class (exact) coif.LocksClip.taper.fields
+---@field width number # Width at the far end as a multiple of what it was: below 1 narrows, above 1 flares. [0.01 to 10]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field about? coif.Point # The axis that it narrows towards goes through this place; the middle when left out. [cm]
+
+---Makes it narrower, or wider (flared), towards the far end.
+---@param fields coif.LocksClip.taper.fields
+---@return coif.LocksClip
+function LocksClip:taper(fields) end
+
+---What `LocksClip:lift` takes.
+---@class (exact) coif.LocksClip.lift.fields
+---@field by number # How far at the far end. [cm; -100 to 100]
+---@field towards? coif.Direction # Which way. [default { 0, 1, 0 }]
+---@field along? coif.Direction # From the near end to the far end; as `towards` when left out.
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+
+---Lifts it: what lies at the far end is moved by the whole distance, what lies at the near end stays.
+---@param fields coif.LocksClip.lift.fields
+---@return coif.LocksClip
+function LocksClip:lift(fields) end
 
 ---A motion of the head; made by `Head:motion`.
 ---@class coif.Motion
@@ -996,6 +1341,73 @@ function Tufts:material(material) end
 ---@return table<string, any>
 function Tufts:stats() end
 
+---What `Tufts:deform` takes.
+---@class (exact) coif.Tufts.deform.fields
+---@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Moves it by lattices and pins, one after the other.
+---@param fields coif.Tufts.deform.fields
+---@return coif.Tufts
+function Tufts:deform(fields) end
+
+---What `Tufts:bend` takes.
+---@class (exact) coif.Tufts.bend.fields
+---@field angle number # By how much at the far end. [degrees; -180 to 180]
+---@field towards? coif.Direction # Which way the far end goes. [default { 0, 0, 1 }]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Bends it, as a whole: what lies at the far end turns by the angle, in between by a part of it.
+---@param fields coif.Tufts.bend.fields
+---@return coif.Tufts
+function Tufts:bend(fields) end
+
+---What `Tufts:taper` takes.
+---@class (exact) coif.Tufts.taper.fields
+---@field width number # Width at the far end as a multiple of what it was: below 1 narrows, above 1 flares. [0.01 to 10]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field about? coif.Point # The axis that it narrows towards goes through this place; the middle when left out. [cm]
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Makes it narrower, or wider (flared), towards the far end.
+---@param fields coif.Tufts.taper.fields
+---@return coif.Tufts
+function Tufts:taper(fields) end
+
+---What `Tufts:lift` takes.
+---@class (exact) coif.Tufts.lift.fields
+---@field by number # How far at the far end. [cm; -100 to 100]
+---@field towards? coif.Direction # Which way. [default { 0, 1, 0 }]
+---@field along? coif.Direction # From the near end to the far end; as `towards` when left out.
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
+---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
+---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
+
+---Lifts it: what lies at the far end is moved by the whole distance, what lies at the near end stays.
+---@param fields coif.Tufts.lift.fields
+---@return coif.Tufts
+function Tufts:lift(fields) end
+
+---What `Tufts:carry` takes.
+---@class (exact) coif.Tufts.carry.fields
+---@field to coif.Head # The other head.
+
+---Carries it to another head: the smooth motion through the landmarks of both heads moves every point, roots are
+---laid on the new skin, and what then lies in the new head is moved out.
+---@param fields coif.Tufts.carry.fields
+---@return coif.Tufts
+function Tufts:carry(fields) end
+
 ---How stylised hair looks; made by `coif.material.tuft`.
 ---@class coif.TuftMaterial
 local TuftMaterial = {}
@@ -1010,6 +1422,61 @@ local Path = {}
 ---@field kind string # `cap`, `bun` or `ring`.
 ---@field triangles number # How many triangles it has.
 local Piece = {}
+
+---What `Piece:deform` takes.
+---@class (exact) coif.Piece.deform.fields
+---@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+
+---Moves it by lattices and pins, one after the other.
+---@param fields coif.Piece.deform.fields
+---@return coif.Piece
+function Piece:deform(fields) end
+
+---What `Piece:bend` takes.
+---@class (exact) coif.Piece.bend.fields
+---@field angle number # By how much at the far end. [degrees; -180 to 180]
+---@field towards? coif.Direction # Which way the far end goes. [default { 0, 0, 1 }]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+
+---Bends it, as a whole: what lies at the far end turns by the angle, in between by a part of it.
+---@param fields coif.Piece.bend.fields
+---@return coif.Piece
+function Piece:bend(fields) end
+
+---What `Piece:taper` takes.
+---@class (exact) coif.Piece.taper.fields
+---@field width number # Width at the far end as a multiple of what it was: below 1 narrows, above 1 flares. [0.01 to 10]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field about? coif.Point # The axis that it narrows towards goes through this place; the middle when left out. [cm]
+
+---Makes it narrower, or wider (flared), towards the far end.
+---@param fields coif.Piece.taper.fields
+---@return coif.Piece
+function Piece:taper(fields) end
+
+---What `Piece:lift` takes.
+---@class (exact) coif.Piece.lift.fields
+---@field by number # How far at the far end. [cm; -100 to 100]
+---@field towards? coif.Direction # Which way. [default { 0, 1, 0 }]
+---@field along? coif.Direction # From the near end to the far end; as `towards` when left out.
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+
+---Lifts it: what lies at the far end is moved by the whole distance, what lies at the near end stays.
+---@param fields coif.Piece.lift.fields
+---@return coif.Piece
+function Piece:lift(fields) end
+
+---What `Piece:carry` takes.
+---@class (exact) coif.Piece.carry.fields
+---@field to coif.Head # The other head.
+
+---Carries it to another head: the smooth motion through the landmarks of both heads moves every point, roots are
+---laid on the new skin, and what then lies in the new head is moved out.
+---@param fields coif.Piece.carry.fields
+---@return coif.Piece
+function Piece:carry(fields) end
 
 ---How hair looks; made by `coif.material.hair`.
 ---@class coif.HairMaterial
@@ -1100,6 +1567,247 @@ function Test:error(body, text) end
 ---@param options? coif.Test.preview.options # How it is drawn and compared.
 ---@return boolean
 function Test:preview(scene, name, options) end
+
+---A grid of control points; what is inside follows them, what is outside stays.
+---@class coif.Lattice
+---@field count number # How many control points.
+local Lattice = {}
+
+---What `Lattice:move` takes.
+---@class (exact) coif.Lattice.move.fields
+---@field i? number|number[]|nil # Along the first edge (to the head's left): one index, or { first, last }.
+---@field j? number|number[]|nil # Along the second edge (up).
+---@field k? number|number[]|nil # Along the third edge (to the front).
+---@field group? string # A named group.
+---@field by? coif.Point|fun(place: vector, i: number, j: number, k: number): vector # How far; or a function that is told where a point stands and its indices, and returns how far.
+---@field scale? number|coif.Point|nil # Stretch along the axes of space: one number for all, or three.
+---@field turn? number # Turn about `axis`. [degrees; -360 to 360; default 0]
+---@field axis? coif.Direction # The axis of the turn. [default { 0, 1, 0 }]
+---@field about? coif.Point # The place that scaling and turning leave where it is; the middle of the points when left out. [cm]
+
+---Moves control points: scales and turns them about a place, then shifts them. Without `i`, `j`, `k` or `group`
+---all of them; fixed ones stay.
+---@param fields? coif.Lattice.move.fields
+---@return coif.Lattice
+function Lattice:move(fields) end
+
+---What `Lattice:group` takes.
+---@class (exact) coif.Lattice.group.fields
+---@field name string # The name.
+---@field i? number|number[]|nil # Along the first edge: one index, or { first, last }.
+---@field j? number|number[]|nil # Along the second edge.
+---@field k? number|number[]|nil # Along the third edge.
+
+---Gives control points a name, to move them by it later.
+---@param fields coif.Lattice.group.fields
+---@return coif.Lattice
+function Lattice:group(fields) end
+
+---What `Lattice:mark` takes.
+---@class (exact) coif.Lattice.mark.fields
+---@field kind "overall"|"feature"|"fixed" # The kind.
+---@field i? number|number[]|nil # Along the first edge: one index, or { first, last }.
+---@field j? number|number[]|nil # Along the second edge.
+---@field k? number|number[]|nil # Along the third edge.
+---@field group? string # A named group.
+
+---Says what control points are for: `overall`, `feature` or `fixed`. It may change between steps.
+---@param fields coif.Lattice.mark.fields
+---@return coif.Lattice
+function Lattice:mark(fields) end
+
+---What `Lattice:hold` takes.
+---@class (exact) coif.Lattice.hold.fields
+---@field [integer] coif.Point # The places. [cm]
+---@field power? number # How sharply the hold falls off: the exponent of the affinity. [0.5 to 8; default 2]
+
+---Holds places of the object itself: what is near them moves less, and they do not move at all.
+---@param fields coif.Lattice.hold.fields
+---@return coif.Lattice
+function Lattice:hold(fields) end
+
+---What `Lattice:follow` takes.
+---@class (exact) coif.Lattice.follow.fields
+---@field power? number # The exponent of the affinity. [0.5 to 8; default 2]
+
+---Lets overall control points follow the feature points that were moved, held back by the fixed ones.
+---@param fields? coif.Lattice.follow.fields
+---@return coif.Lattice
+function Lattice:follow(fields) end
+
+---Where a control point stands.
+---@param i number # Index along the first edge, from 0. [whole]
+---@param j number # Index along the second edge, from 0. [whole]
+---@param k number # Index along the third edge, from 0. [whole]
+---@return vector
+function Lattice:place(i, j, k) end
+
+---Fixed points and operated points in space.
+---@class coif.Pins
+local Pins = {}
+
+---The next step: every point stands where this step leaves it, and none has a target yet.
+---@return coif.Pins
+function Pins:settled() end
+
+---What `Pins:mark` takes.
+---@class (exact) coif.Pins.mark.fields
+---@field name string # The name of the point.
+---@field kind "overall"|"feature"|"fixed" # Its kind from now on.
+---@field to? coif.Point # Where it goes now. [cm]
+
+---The next step: gives a named point another kind, and perhaps a target.
+---@param fields coif.Pins.mark.fields
+---@return coif.Pins
+function Pins:mark(fields) end
+
+---A garment: a surface in named parts, with tapes around it.
+---@class coif.Garment
+---@field kind string # `skirt`, `dress`, `shirt`, `trousers`, `form`, or the name of its file.
+local Garment = {}
+
+---What `Garment:girth` takes.
+---@class (exact) coif.Garment.girth.fields
+---@field tape? string # The name of a tape.
+---@field height? number # Or any height. [cm]
+---@field side? "middle"|"left"|"right" # Which of several outlines: the largest, or the largest on one side.
+---@field parts? string[] # Only these parts.
+---@field measure? "tape"|"perimeter" # As a tape measure reads it, or along the cloth into every fold. [default "tape"]
+
+---What a tape reads.
+---@param fields? coif.Garment.girth.fields
+---@return number
+function Garment:girth(fields) end
+
+---What `Garment:tape` takes.
+---@class (exact) coif.Garment.tape.fields
+---@field name string # Its name.
+---@field height number # Its height. [cm]
+---@field side? "middle"|"left"|"right" # Which of several outlines. [default "middle"]
+---@field parts? string[] # Only around these parts.
+
+---Puts a tape around it: a name for a height.
+---@param fields coif.Garment.tape.fields
+---@return coif.Garment
+function Garment:tape(fields) end
+
+---What `Garment:fit` takes.
+---@class (exact) coif.Garment.fit.fields
+---@field measure? "tape"|"perimeter" # How girths are measured. [default "tape"]
+---@field hold? "back"|"front"|"left"|"right"|coif.Point[]|nil # Places of the cloth that stay: "back", "front", "left", "right", or a list of points.
+---@field power? number # How sharply the hold falls off: the exponent of the affinity. [0.5 to 8; default 2]
+---@field reach? number # How far above and below a tape the cloth may move, at most. [cm; 1 to 100; default 18]
+---@field soft? number # How far sewn-on parts follow. [cm; 0.1 to 50; default 8]
+---@field [string] number # What the tape of that name shall read, cm. [cm]
+
+---Finds the motion of control points that makes tapes read what is wanted, each to a tenth of a millimetre:
+---`garment:fit { waist = 67 }`. The rest is held: nothing moves beyond the tapes above and below.
+---@param fields? coif.Garment.fit.fields
+---@return coif.Garment
+function Garment:fit(fields) end
+
+---What `Garment:split` takes.
+---@class (exact) coif.Garment.split.fields
+---@field [string] number[] # From which height to which, cm. [cm]
+
+---Names parts by bands of heights: `garment:split { bust = { -48, -30 }, waist = { -67, -48 } }`.
+---@param fields? coif.Garment.split.fields
+---@return coif.Garment
+function Garment:split(fields) end
+
+---What `Garment:clear` takes.
+---@class (exact) coif.Garment.clear.fields
+---@field body coif.Garment|coif.Head # The body: a dress form, any garment that encloses something, or a head.
+---@field margin? number # How far from the body it shall lie. [cm; 0 to 10; default 0.3]
+
+---Pushes the cloth out of a body where it dips in, smoothly.
+---@param fields coif.Garment.clear.fields
+---@return coif.Garment
+function Garment:clear(fields) end
+
+---What `Garment:deform` takes.
+---@class (exact) coif.Garment.deform.fields
+---@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+
+---Moves it by lattices and pins, one after the other.
+---@param fields coif.Garment.deform.fields
+---@return coif.Garment
+function Garment:deform(fields) end
+
+---What `Garment:bend` takes.
+---@class (exact) coif.Garment.bend.fields
+---@field angle number # By how much at the far end. [degrees; -180 to 180]
+---@field towards? coif.Direction # Which way the far end goes. [default { 0, 0, 1 }]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+
+---Bends it, as a whole: what lies at the far end turns by the angle, in between by a part of it.
+---@param fields coif.Garment.bend.fields
+---@return coif.Garment
+function Garment:bend(fields) end
+
+---What `Garment:taper` takes.
+---@class (exact) coif.Garment.taper.fields
+---@field width number # Width at the far end as a multiple of what it was: below 1 narrows, above 1 flares. [0.01 to 10]
+---@field along? coif.Direction # From the near end to the far end. [default { 0, -1, 0 }]
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+---@field about? coif.Point # The axis that it narrows towards goes through this place; the middle when left out. [cm]
+
+---Makes it narrower, or wider (flared), towards the far end.
+---@param fields coif.Garment.taper.fields
+---@return coif.Garment
+function Garment:taper(fields) end
+
+---What `Garment:lift` takes.
+---@class (exact) coif.Garment.lift.fields
+---@field by number # How far at the far end. [cm; -100 to 100]
+---@field towards? coif.Direction # Which way. [default { 0, 1, 0 }]
+---@field along? coif.Direction # From the near end to the far end; as `towards` when left out.
+---@field from? number # Where it begins, as a part of the way from the near end. [0 to 0.95; default 0]
+
+---Lifts it: what lies at the far end is moved by the whole distance, what lies at the near end stays.
+---@param fields coif.Garment.lift.fields
+---@return coif.Garment
+function Garment:lift(fields) end
+
+---The same garment somewhere else.
+---@param by coif.Point # How far. [cm]
+---@return coif.Garment
+function Garment:shifted(by) end
+
+---What `Garment:ribbon` takes.
+---@class (exact) coif.Garment.ribbon.fields
+---@field tape string # The name of a tape.
+---@field width? number # Its width. [cm; 0.2 to 20; default 1.6]
+---@field colour? coif.Colour # Its colour. [default "#f2c12e"]
+
+---A measuring tape laid around it, as a thing to be seen.
+---@param fields coif.Garment.ribbon.fields
+---@return coif.Garment
+function Garment:ribbon(fields) end
+
+---What `Garment:material` takes.
+---@class (exact) coif.Garment.material.fields
+---@field colour? coif.Colour # Its colour. [default "#6f83a8"]
+---@field roughness? number # 0 mirror to 1 chalk. [0 to 1; default 0.85]
+
+---The same garment with another look.
+---@param fields? coif.Garment.material.fields
+---@return coif.Garment
+function Garment:material(fields) end
+
+---The names of its parts.
+---@return string[]
+function Garment:parts() end
+
+---The names of its tapes.
+---@return string[]
+function Garment:tapes() end
+
+---Figures: `vertices`, `triangles`, `parts`, `min` and `max` (corners of the bounding box), and the girth of every
+---tape by its name.
+---@return table<string, any>
+function Garment:stats() end
 
 ---The scene of a style, in a test; its parts are reached by name: `scene.hair`, `scene.head`. The style is run
 ---when its scene is first asked for.

@@ -11,6 +11,7 @@ use glam::Vec3;
 
 use super::step::Body;
 use crate::geometry::{Solid, Strands, Vicinity};
+use crate::task::{Cancelled, Task};
 use rayon::prelude::*;
 
 /// Keeps strands out of a body.
@@ -304,6 +305,43 @@ pub fn is_inside(solid: &Solid, points: &[Vec3]) -> bool {
                 && !is_covered(solid, (a, was_free), (b, clearance), 2)
                 && solid.is_crossed(a, b))
     })
+}
+
+/// Moves the strands that `which` says out of the body; roots stay. Tells how many were cut short, and how many found no
+/// way out at all.
+///
+/// # Errors
+/// Cancelling.
+pub fn keep_out(
+    strands: &mut Strands,
+    which: &(dyn Fn(usize) -> bool + Sync),
+    body: Body,
+    task: &Task,
+) -> Result<[usize; 2], Cancelled> {
+    let Strands { points, offsets, .. } = strands;
+    let mut rest = points.as_mut_slice();
+    let mut pieces = Vec::with_capacity(offsets.len().saturating_sub(1));
+    for w in offsets.windows(2) {
+        let (piece, after) = std::mem::take(&mut rest).split_at_mut((w[1] - w[0]) as usize);
+        pieces.push(piece);
+        rest = after;
+    }
+    let clear = Clear { body };
+    let add = |a: [usize; 2], b: [usize; 2]| Ok([a[0] + b[0], a[1] + b[1]]);
+    let work = pieces.into_par_iter().enumerate().map_init(Scratch::default, |scratch, (i, nodes)| {
+        if !which(i) {
+            return Ok([0, 0]);
+        }
+        if i.is_multiple_of(64) {
+            task.check()?;
+        }
+        Ok(match clear.strand(nodes, scratch) {
+            Outcome::Clear => [0, 0],
+            Outcome::Cut => [1, 0],
+            Outcome::Stuck => [0, 1],
+        })
+    });
+    work.try_reduce(|| [0, 0], add)
 }
 
 /// How many strands have a node or a segment (the root's own first apart) inside the body, by the exact test.

@@ -24,7 +24,7 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-pub use clear::{count_inside, is_inside};
+pub use clear::{count_inside, is_inside, keep_out};
 pub use domain::{Curl, Directional, Domain, Gather, Measure, NaturalOptions, Turn, Wave};
 pub use error::GroomError;
 pub use fill::{Fill, FillOptions, Separated, fill, member_nodes};
@@ -34,3 +34,4 @@ pub use moving::{Moving, deform_clip, fill_clip, pass_through};
 pub use natural::{Deform, DeformOptions, Natural, NaturalQueue, Shape, deform, deformed_points, fade, ramp, scale};
 pub use queue::{Queue, QueueOptions, Stage, Walk};
 pub use region::BoxOptions;
+pub use step::Body;

@@ -200,7 +200,7 @@ mod tests {
             part("stone", square(1.0, 1.0), 0xc0_40_20, (frames > 0).then_some(Motion::Rigid(clip))),
         ];
         let (views, look, shown) = (vec![View::Front], Look::default(), Shown::default());
-        Scene { name: "s".into(), parts, views, look, placement: Affine3A::IDENTITY, shown }
+        Scene { name: "s".into(), parts, views, look, placement: Affine3A::IDENTITY, shown, overlay: Arc::default() }
     }
 
     fn small() -> SheetOptions {

@@ -142,6 +142,7 @@ pub fn frame(scene: &Scene, views: &[Mat3]) -> Framing {
     let mut many: Vec<&[Vec3]> = Vec::new();
     for part in &scene.parts {
         match &part.body {
+            Body::Mesh(mesh, _) if part.is_garment() => many.push(&mesh.positions),
             Body::Mesh(mesh, _) => {
                 let top = mesh.positions.iter().filter(|p| p.is_finite()).map(|p| p.y).fold(0.0, f32::max);
                 let (floor, neck) = (-1.5 * top, -0.9 * top);
@@ -161,6 +162,10 @@ pub fn frame(scene: &Scene, views: &[Mat3]) -> Framing {
                 }
             }
         }
+    }
+    if scene.look.debug {
+        let overlay = &scene.overlay;
+        few.extend(overlay.lines.iter().chain(&overlay.thin).flat_map(|l| &l.points));
     }
     many.push(&few);
     let turns: Vec<Mat3> = views.iter().map(Mat3::transpose).collect();

@@ -77,7 +77,7 @@ pub struct Drawing {
     pub labels: Vec<Label>,
 }
 
-/// Draws the scene's hair parts for `camera`; lines are `pen` pixels wide.
+/// Draws the scene's hair parts and its overlay for `camera`; lines are `pen` pixels wide.
 pub fn draw(scene: &Scene, camera: &Camera, pen: f32) -> Drawing {
     let (mut guides, mut thin, mut bold) = (Wires::new(0.6 * pen), Wires::new(1.3 * pen), Wires::new(2.6 * pen));
     let mut dots = Wires::new(1.7 * pen);
@@ -88,11 +88,16 @@ pub fn draw(scene: &Scene, camera: &Camera, pen: f32) -> Drawing {
         for root in &hair.guides.roots {
             dot(root.position + root.normal * 0.05, 1.7 * pen, Colour::hex(0x50_55_5c), camera, &mut dots);
         }
-        shapes(&hair.overlay, camera, &mut thin, &mut labels);
-        for line in &hair.overlay.lines {
+    }
+    for overlay in scene.hair().map(|(_, hair)| &hair.overlay).chain([&scene.overlay]) {
+        shapes(overlay, camera, &mut thin, &mut labels);
+        for line in &overlay.thin {
+            guides.line(line.points.iter().copied(), line.colour);
+        }
+        for line in &overlay.lines {
             bold.line(line.points.iter().copied(), line.colour);
         }
-        for marker in &hair.overlay.markers {
+        for marker in &overlay.markers {
             dot(marker.position, 5.0 * pen, marker.colour, camera, &mut bold);
             if !marker.label.is_empty() {
                 let at = marker.position + (camera.right + camera.up) * (5.0 * pen * pixel);

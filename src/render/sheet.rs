@@ -95,6 +95,11 @@ pub enum RenderError {
 /// Height of the strip at the lower border that fades out, as a fraction of a view's.
 const FADE: f32 = 0.10;
 
+/// The cut through a bust fades; a garment has an end of its own.
+fn fade(scene: &Scene) -> f32 {
+    if scene.parts.iter().any(crate::scene::Part::is_garment) { 0.0 } else { FADE }
+}
+
 /// Most pixels of a sheet, in millions.
 pub(super) const MOST_PIXELS: u64 = 200;
 
@@ -373,7 +378,7 @@ impl Stage {
         let ss = options.supersample as usize;
         if let (Some(toon), None) = (&self.toon, scene.hair().next()) {
             task.progress("surfaces", 0.2);
-            let paper = toon::Paper { background: paper.to_linear(), fade: FADE };
+            let paper = toon::Paper { background: paper.to_linear(), fade: fade(scene) };
             return Ok((toon.picture(camera, ss, paper, task)?, vec![]));
         }
         let fine = camera.enlarged(ss);
@@ -410,7 +415,7 @@ impl Stage {
             layer: &layer,
             solid: if drawing.is_some() { 0.45 } else { 1.0 },
             background: paper.to_linear(),
-            fade: FADE,
+            fade: fade(scene),
         };
         steps.step()?;
         let pixels = raster::draw(&bundles, &canvas, task)?;

@@ -65,6 +65,7 @@ fn scene(parts: Vec<Part>, views: &[View]) -> Scene {
         look: Look::default(),
         placement: Affine3A::IDENTITY,
         shown: Shown::default(),
+        overlay: Arc::default(),
     }
 }
 

@@ -34,6 +34,8 @@ pub struct Scene {
     pub placement: Affine3A,
     /// Which frames the pictures show, when anything moves.
     pub shown: Shown,
+    /// What the debug view draws besides what hair brings with it: lattices, pins, tapes.
+    pub overlay: Arc<Overlay>,
 }
 
 /// One thing in a scene.
@@ -71,6 +73,13 @@ pub struct Hair {
     pub material: HairMaterial,
     /// Domains, partings, roots: what the debug view draws.
     pub overlay: Arc<Overlay>,
+}
+
+impl Part {
+    /// True for a garment, which is shown as far down as it goes; of any other surface, a bust, the lower end is left out.
+    pub fn is_garment(&self) -> bool {
+        matches!(self.body, Body::Mesh(..)) && (self.name == "garment" || self.name.starts_with("garment_"))
+    }
 }
 
 impl Scene {

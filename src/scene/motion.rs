@@ -170,6 +170,7 @@ mod tests {
             look,
             placement: Affine3A::IDENTITY,
             shown: Shown::default(),
+            overlay: Arc::default(),
         }
     }
 

@@ -13,8 +13,10 @@ pub struct Overlay {
     pub spheres: Vec<WireSphere>,
     /// Arrows: directions of domains.
     pub arrows: Vec<Arrow>,
-    /// Polylines: partings.
+    /// Polylines: partings, tapes.
     pub lines: Vec<Line>,
+    /// Thin polylines: lattices.
+    pub thin: Vec<Line>,
     /// Points: roots, landmarks.
     pub markers: Vec<Marker>,
 }
@@ -79,12 +81,24 @@ pub struct Marker {
 }
 
 impl Overlay {
+    /// Moves all of it.
+    pub fn shift(&mut self, by: Vec3) {
+        self.boxes.iter_mut().for_each(|b| b.centre += by);
+        self.spheres.iter_mut().for_each(|s| s.centre += by);
+        for arrow in &mut self.arrows {
+            (arrow.from, arrow.to) = (arrow.from + by, arrow.to + by);
+        }
+        self.lines.iter_mut().chain(&mut self.thin).flat_map(|l| &mut l.points).for_each(|p| *p += by);
+        self.markers.iter_mut().for_each(|m| m.position += by);
+    }
+
     /// Appends everything of another overlay.
     pub fn extend(&mut self, other: &Self) {
         self.boxes.extend_from_slice(&other.boxes);
         self.spheres.extend_from_slice(&other.spheres);
         self.arrows.extend_from_slice(&other.arrows);
         self.lines.extend_from_slice(&other.lines);
+        self.thin.extend_from_slice(&other.thin);
         self.markers.extend_from_slice(&other.markers);
     }
 }

@@ -12,6 +12,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::Vec3;
 
+use crate::deform::Fitted;
+use crate::garment::Garment;
 use crate::geometry::{Clip, Mesh, Root, Strands};
 use crate::groom::Moving;
 use crate::head::Head;
@@ -39,6 +41,18 @@ impl Kept for Moving {
 impl Kept for Head {
     fn bytes(&self) -> usize {
         Self::bytes(self)
+    }
+}
+
+impl Kept for Garment {
+    fn bytes(&self) -> usize {
+        self.mesh.bytes()
+    }
+}
+
+impl Kept for Fitted {
+    fn bytes(&self) -> usize {
+        self.mesh.bytes() + self.lattices.len() * 2048
     }
 }
 

@@ -99,6 +99,8 @@ pub struct Session {
     pub thinned: Cell<Thinned>,
     /// Heads made so far, by what was asked for.
     pub heads: RefCell<BTreeMap<String, Arc<Head>>>,
+    /// Heads whose hair is carried to another one at the end: (from, to).
+    pub carries: RefCell<Vec<(Arc<Head>, Arc<Head>)>>,
 }
 
 /// The session of a VM.
@@ -126,6 +128,7 @@ impl Session {
             claimed: Cell::default(),
             thinned: Cell::default(),
             heads: RefCell::default(),
+            carries: RefCell::default(),
         }
     }
 

@@ -101,6 +101,7 @@ pub fn scene(count: u64) -> Scene {
         look: Look::default(),
         placement: Affine3A::from_rotation_translation(turn, Vec3::new(0.0, 160.0, 2.0)),
         shown: Shown::default(),
+        overlay: Arc::default(),
     }
 }
 

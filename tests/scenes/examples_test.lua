@@ -4,11 +4,13 @@ local examples = {
   bob           = "three-quarter",
   braid         = "back",
   crop          = "three-quarter",
+  lifted        = "front",
   long_straight = "front",
   pigtails      = "front",
   ponytail      = "left",
   ponytail_edit = "front",
   ringlets      = "front",
+  three_heads   = "three-quarter",
   top_knot      = "left",
   waves         = "three-quarter",
 }

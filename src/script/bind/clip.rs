@@ -176,7 +176,7 @@ macro_rules! time {
 
 /// Strands in motion, stylised hair in motion, motions of the head.
 pub fn nouns() -> Vec<Noun> {
-    let methods = vec![
+    let mut methods = vec![
         Entry::positional::<FrameFields>("StrandsClip:frame", "Strands", frame),
         Entry::table::<DeformOptions>("StrandsClip:natural", "StrandsClip", natural_clip).about(
             "Lays waves and curls over strands in motion, as `Strands:natural` over strands. Each domain acts at every \
@@ -197,6 +197,7 @@ pub fn nouns() -> Vec<Noun> {
         )
         .sealed("the table of figures"),
     ];
+    methods.extend(super::deform::moving_strands_methods());
     let mut getters = vec![Getter {
         name: "count",
         doc: "How many strands.",
@@ -210,9 +211,11 @@ pub fn nouns() -> Vec<Noun> {
             .map_or_else(String::new, |m| format!("{} frames of {} strands", m.strands.count(), m.rest.strands.count()))
     });
     let doc = "Stylised hair in motion: frames of its surface at equal distances in time.";
-    let locks = Noun::of::<MovingLocks>(doc, vec![], time!(MovingLocks, surface).into(), |h| {
-        h.get::<MovingLocks>().map_or_else(String::new, |m| format!("{} frames of stylised hair", m.surface.count()))
-    });
+    let locks =
+        Noun::of::<MovingLocks>(doc, super::deform::moving_locks_methods(), time!(MovingLocks, surface).into(), |h| {
+            h.get::<MovingLocks>()
+                .map_or_else(String::new, |m| format!("{} frames of stylised hair", m.surface.count()))
+        });
     let methods = vec![Entry::positional::<PlaceFields>("Motion:place", "vector", place)];
     let motion = Noun::of::<HeadMotion>(
         "A motion of the head; made by `Head:motion`.",

@@ -40,6 +40,9 @@ crate::params! {
         groups: Vec<String> = vec![];
         /// Landmarks by name, in the file's own axes and unit, instead of those found from the shape.
         landmarks: Value = Value::Table(Table::default()), takes("table<string, Point>");
+        /// What `--head FILE` does: false grows the style on that head instead of this one; true grows it on this head and
+        /// carries it to that one, which is right for a style in plain coordinates.
+        carry: bool = false;
     }
 }
 
@@ -145,6 +148,7 @@ pub fn nouns() -> Vec<Noun> {
         Entry::table::<PartingFields>("Head:parting", "Parting", parting),
     ];
     methods.extend(super::clip::head_methods());
+    methods.extend(super::deform::head_methods());
     let getters = vec![
         Getter {
             name: "scale",
@@ -193,11 +197,16 @@ fn head(call: &Call) -> Result<Value> {
     if let Some(head) = call.session.heads.borrow().get(&key) {
         return Ok(Value::Handle(Handle::new(Arc::clone(head))));
     }
-    let head = match (&call.session.options.head, &fields.file) {
-        (Some(path), _) => {
+    let of_run = || match &call.session.options.head {
+        Some(path) => {
             let options = LoadOptions { unit: call.session.options.head_unit, ..LoadOptions::default() };
-            from_file(call, path, "", &options, &BTreeMap::new())?
+            from_file(call, path, "", &options, &BTreeMap::new()).map(Some)
         }
+        None => Ok(None),
+    };
+    let instead = if fields.carry { None } else { of_run()? };
+    let head = match (instead, &fields.file) {
+        (Some(head), _) => head,
         (None, Some(file)) => {
             let options = LoadOptions {
                 unit: fields.unit,
@@ -223,6 +232,11 @@ fn head(call: &Call) -> Result<Value> {
             built_in(call, fields.style)?
         }
     };
+    if fields.carry
+        && let Some(to) = of_run()?
+    {
+        call.session.carries.borrow_mut().push((Arc::clone(&head), to));
+    }
     call.claim("", Need::triangles(head.mesh.triangles.len()))?;
     call.session.heads.borrow_mut().insert(key, Arc::clone(&head));
     Ok(Value::Handle(Handle::new(head)))
@@ -234,7 +248,9 @@ static CARTOON: OnceLock<Arc<Head>> = OnceLock::new();
 /// Every head that a run can have used, once: those it made, and the mannequins.
 pub fn heads(session: &Session) -> Vec<Arc<Head>> {
     let mut all: Vec<Arc<Head>> = vec![];
-    for head in session.heads.borrow().values().chain(ADULT.get()).chain(CARTOON.get()) {
+    let carries = session.carries.borrow();
+    let to = carries.iter().map(|(_, to)| to);
+    for head in session.heads.borrow().values().chain(to).chain(ADULT.get()).chain(CARTOON.get()) {
         if !all.iter().any(|known| Arc::ptr_eq(known, head)) {
             all.push(Arc::clone(head));
         }

@@ -6,7 +6,9 @@
 mod animate;
 mod clip;
 mod constants;
+mod deform;
 mod domain;
+mod garment;
 mod golden;
 mod guides;
 mod head;
@@ -44,6 +46,8 @@ pub fn registry() -> Registry {
         tuft::functions(),
         piece::functions(),
         animate::functions(),
+        deform::functions(),
+        garment::functions(),
         material::functions(),
         clip::functions(),
         scene::functions(),
@@ -56,6 +60,8 @@ pub fn registry() -> Registry {
         tuft::nouns(),
         vec![animate::noun()],
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
+        deform::nouns(),
+        vec![garment::noun()],
         tested::nouns(),
     ];
     Registry {

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::region::Area;
+use crate::deform::{Lattice, Pins, PointKind};
+use crate::geometry::slice::Outline;
 use crate::geometry::{OrientedBox, Root};
 use crate::groom::{Domain, Queue};
 use crate::math::Colour;
@@ -17,6 +19,10 @@ const PARTING: Colour = Colour::hex(0xe0_3c_31);
 const NATURAL: Colour = Colour::hex(0x9a_5b_c2);
 /// Colour of roots.
 const ROOT: Colour = Colour::hex(0x5a_5f_69);
+/// Colour of the grid of a lattice.
+const GRID: Colour = Colour::hex(0x8d_93_9c);
+/// Colour of tapes.
+const TAPE: Colour = Colour::hex(0xb5_7a_00);
 /// Length of arrows, cm.
 const ARROW: f32 = 4.0;
 
@@ -62,6 +68,68 @@ pub fn queue(queue: &Queue, before: usize) -> Overlay {
 pub fn naturals(domains: &[Arc<Domain>]) -> Overlay {
     let boxes = domains.iter().enumerate().filter_map(|(i, d)| Some(wire(d.region()?, NATURAL, label(d, i)))).collect();
     Overlay { boxes, ..Overlay::default() }
+}
+
+/// Colour of a control point by what it is for.
+fn kind_colour(kind: PointKind) -> Colour {
+    Colour::hex(match kind {
+        PointKind::Overall => 0x2f_7d_e1,
+        PointKind::Feature => 0xe4_57_2e,
+        PointKind::Fixed => 0x12_a1_79,
+    })
+}
+
+/// A lattice as it stands: its grid, and its control points by kind.
+pub fn lattice(lattice: &Lattice) -> Overlay {
+    let mut out = Overlay::default();
+    let last = lattice.divisions();
+    for index in 0..lattice.count() {
+        let at = lattice.indices(index);
+        let position = lattice.place(index);
+        for axis in 0..3 {
+            let mut next = at;
+            next[axis] += 1;
+            if next[axis] <= last[axis] {
+                let points = vec![position, lattice.place(lattice.index(next))];
+                out.thin.push(Line { points, colour: GRID });
+            }
+        }
+        out.markers.push(Marker { position, colour: kind_colour(lattice.kind(index)), label: String::new() });
+    }
+    held(lattice.held(), &mut out);
+    out
+}
+
+fn held(places: &[Vec3], out: &mut Overlay) {
+    let colour = kind_colour(PointKind::Fixed);
+    out.markers.extend(places.iter().map(|&position| Marker { position, colour, label: String::new() }));
+}
+
+/// Pins: where they go and where they came from, by kind.
+pub fn pins(pins: &Pins) -> Overlay {
+    let mut out = Overlay::default();
+    for pin in pins.points() {
+        let (colour, label) = (kind_colour(pin.kind), pin.name.clone().unwrap_or_default());
+        if let Some(to) = pin.to {
+            out.arrows.push(Arrow { from: pin.at, to, colour });
+        }
+        out.markers.push(Marker { position: pin.to.unwrap_or(pin.at), colour, label });
+    }
+    out
+}
+
+/// A tape around an outline, with what it reads.
+pub fn tape(name: &str, outline: &Outline) -> Overlay {
+    let height = outline.points.first().map_or(0.0, |p| p.y);
+    let hull = outline.hull();
+    let points: Vec<Vec3> = hull.iter().chain(hull.first()).map(|p| Vec3::new(p.x, height, p.y)).collect();
+    let right = points.iter().copied().fold(Vec3::ZERO, |m, p| if p.x > m.x { p } else { m });
+    let label = format!("{name} {:.1} cm", outline.tape());
+    Overlay {
+        lines: vec![Line { points, colour: TAPE }],
+        markers: vec![Marker { position: right, colour: TAPE, label }],
+        ..Overlay::default()
+    }
 }
 
 /// Shrinks boxes that reach far beyond everything that is drawn: their sides would lie outside of every view.

@@ -79,7 +79,7 @@ pub fn noun() -> Noun {
             get: |h| h.get::<Piece>().map_or(Value::Nil, |p| Value::Number(p.mesh.triangles.len() as f64)),
         },
     ];
-    Noun::of::<Piece>("A cap, a bun or a ring of stylised hair.", vec![], getters, |h| {
+    Noun::of::<Piece>("A cap, a bun or a ring of stylised hair.", super::deform::piece_methods(), getters, |h| {
         h.get::<Piece>()
             .map_or_else(String::new, |p| format!("{} of {} triangles", p.kind.text(), p.mesh.triangles.len()))
     })

@@ -8,10 +8,11 @@ use super::super::call::{Call, Result};
 use super::super::limits::Need;
 use super::super::registry::{Entry, Noun};
 use super::clip::{MovingLocks, MovingStrands, StillLocks};
-use super::overlay;
+use super::garment::Cloth;
 use super::piece::Piece as Shape;
 use super::strands::Lock;
 use super::tuft::Wig;
+use super::{deform, overlay};
 use crate::geometry::{Clip, Mesh};
 use crate::head::{Head, HeadMotion};
 use crate::math::Colour;
@@ -71,31 +72,51 @@ enum Piece {
     Hair(Arc<Lock>),
     Tufts(Wig),
     Shape(Arc<Shape>),
+    Cloth(Arc<Cloth>),
     MovingHair(Arc<MovingStrands>),
     /// All moving tufts of one head, or one moving piece.
     MovingLocks(MovingLocks),
 }
 
 impl Piece {
-    /// The head that it is, or belongs to.
-    fn head(&self) -> &Arc<Head> {
-        match self {
+    /// The head that it is, or belongs to, if to any.
+    fn head(&self) -> Option<&Arc<Head>> {
+        Some(match self {
             Self::Head(head) => head,
             Self::Hair(lock) => &lock.area.head,
             Self::Tufts(wig) => &wig.head,
             Self::Shape(shape) => &shape.head,
+            Self::Cloth(_) => return None,
             Self::MovingHair(hair) => &hair.rest.area.head,
             Self::MovingLocks(locks) => locks.rest.head(),
-        }
+        })
     }
 
     /// The motion of the head that is in its frames.
     fn motion(&self) -> Option<&Arc<HeadMotion>> {
         match self {
-            Self::Head(_) | Self::Hair(_) | Self::Tufts(_) | Self::Shape(_) => None,
+            Self::Head(_) | Self::Hair(_) | Self::Tufts(_) | Self::Shape(_) | Self::Cloth(_) => None,
             Self::MovingHair(hair) => hair.motion.as_ref(),
             Self::MovingLocks(locks) => locks.motion.as_ref(),
         }
+    }
+
+    /// The same on another head.
+    fn carried(&self, call: &Call, to: &Arc<Head>) -> Result<Self> {
+        Ok(match self {
+            Self::Head(_) => Self::Head(Arc::clone(to)),
+            Self::Hair(lock) => Self::Hair(Arc::new(deform::carried_strands(call, lock, to)?)),
+            Self::Tufts(wig) => Self::Tufts(deform::carried_tufts(call, wig, to)?),
+            Self::Shape(shape) => Self::Shape(Arc::new(deform::carried_piece(call, shape, to)?)),
+            Self::Cloth(cloth) => Self::Cloth(Arc::clone(cloth)),
+            Self::MovingHair(_) | Self::MovingLocks(_) => {
+                let (what, source) = self.made();
+                let message =
+                    format!("the {what} made at {source} moves, and what moves is not carried to another head");
+                let hint = "carry it at rest, `hair:carry { to = head }`, and let it move on that head".to_owned();
+                return Err(call.problem(message, Some(hint)));
+            }
+        })
     }
 
     /// What it is and where it was made, for messages.
@@ -105,6 +126,7 @@ impl Piece {
             Self::Hair(lock) => ("hair", &lock.source),
             Self::Tufts(wig) => ("tufts", wig.tufts.sources.first().map_or("", |s| s)),
             Self::Shape(shape) => (shape.kind.text(), &shape.source),
+            Self::Cloth(cloth) => ("garment", &cloth.source),
             Self::MovingHair(hair) => ("hair", &hair.rest.source),
             Self::MovingLocks(locks) => match &locks.rest {
                 StillLocks::Tufts(_) => ("tufts", &locks.source),
@@ -131,6 +153,10 @@ impl Piece {
                 let locks = Locks::piece(shape.kind, Mesh::clone(&shape.mesh), shape.material.clone());
                 (shape.kind.text(), shape.source.to_string(), Body::Locks(locks), None)
             }
+            Self::Cloth(cloth) => {
+                let body = Body::Mesh(Arc::new(cloth.garment.mesh.clone()), cloth.material);
+                ("garment", cloth.source.to_string(), body, None)
+            }
             Self::MovingHair(moving) => {
                 let motion = Motion::Strands { strands: moving.strands.clone(), guides: moving.guides.clone() };
                 ("hair", moving.rest.source.to_string(), Body::Hair(hair(&moving.rest)), Some(motion))
@@ -156,10 +182,18 @@ fn scene(call: &Call) -> Result<Value> {
         let hint = "list them: `coif.scene { head, hair }`".to_owned();
         return Err(call.problem("a scene without head and hair", Some(hint)));
     }
+    let carries = call.session.carries.borrow().clone();
+    for (from, to) in &carries {
+        for piece in &mut pieces {
+            if piece.head().is_some_and(|own| Arc::ptr_eq(own, from)) {
+                *piece = piece.carried(call, to)?;
+            }
+        }
+    }
     let heads: Vec<&Arc<Head>> =
         pieces.iter().filter_map(|p| if let Piece::Head(h) = p { Some(h) } else { None }).collect();
     for piece in &pieces {
-        if !heads.is_empty() && !heads.iter().any(|h| Arc::ptr_eq(h, piece.head())) {
+        if !heads.is_empty() && piece.head().is_some_and(|own| !heads.iter().any(|h| Arc::ptr_eq(h, own))) {
             let (what, source) = piece.made();
             let verb = if what == "tufts" { "grow" } else { "grows" };
             let warning =
@@ -168,7 +202,7 @@ fn scene(call: &Call) -> Result<Value> {
         }
     }
     let placement =
-        heads.first().copied().or(pieces.first().map(Piece::head)).map_or(Affine3A::IDENTITY, |h| h.placement);
+        heads.first().copied().or(pieces.iter().find_map(Piece::head)).map_or(Affine3A::IDENTITY, |h| h.placement);
     let motion = head_motion(call, &fields, &pieces)?;
     let mut scene = Scene {
         name: call.session.options.name(),
@@ -177,6 +211,7 @@ fn scene(call: &Call) -> Result<Value> {
         look: Look { background: fields.background, shading: fields.shading, debug: false },
         placement,
         shown: Shown::default(),
+        overlay: Arc::default(),
     };
     for (i, piece) in pieces.iter().enumerate() {
         if let Piece::Tufts(wig) = piece {
@@ -184,13 +219,18 @@ fn scene(call: &Call) -> Result<Value> {
         }
         let (base, source, body, own) = piece.part(fields.skin);
         let mut part = Part { name: unique(base, &scene.parts), source, body, motion: own };
-        if let (Some(motion), None) = (&motion, piece.motion()) {
+        if let (Some(motion), None, Some(_)) = (&motion, piece.motion(), piece.head()) {
             call.task().check().map_err(|e| call.problem(e.to_string(), None))?;
             part.carry(&motion.clip);
         }
         scene.parts.push(part);
     }
     scene.shown = shown(call, &fields, &scene)?;
+    for piece in &pieces {
+        if let Piece::Cloth(cloth) = piece {
+            Arc::make_mut(&mut scene.overlay).extend(&cloth.overlay);
+        }
+    }
     let bounds = scene.bounds();
     for part in &mut scene.parts {
         if let Body::Hair(hair) = &mut part.body {
@@ -225,7 +265,7 @@ fn head_motion(call: &Call, fields: &SceneFields, pieces: &[Piece]) -> Result<Op
         let own = match piece {
             Piece::MovingHair(hair) => hair.strands.rate,
             Piece::MovingLocks(locks) => locks.surface.rate,
-            Piece::Head(_) | Piece::Hair(_) | Piece::Tufts(_) | Piece::Shape(_) => continue,
+            Piece::Head(_) | Piece::Hair(_) | Piece::Tufts(_) | Piece::Shape(_) | Piece::Cloth(_) => continue,
         };
         let (what, source) = piece.made();
         match &rate {
@@ -298,6 +338,10 @@ fn take(call: &Call, value: &Value, path: &str, out: &mut Vec<Piece>) -> Result<
                 }
                 return Ok(());
             }
+            if let Some(cloth) = h.get::<Cloth>() {
+                out.push(Piece::Cloth(cloth));
+                return Ok(());
+            }
             if let Some(shape) = h.get::<Shape>() {
                 out.push(Piece::Shape(shape));
                 return Ok(());
@@ -326,7 +370,7 @@ fn take(call: &Call, value: &Value, path: &str, out: &mut Vec<Piece>) -> Result<
         Value::Nil => Some("is the name before it spelt as where it was set?"),
         _ => None,
     };
-    let message = format!("expected a Head, Strands, Tufts or a Piece, got {} `{value}`", value.type_name());
+    let message = format!("expected a Head, Strands, Tufts, a Piece or a Garment, got {} `{value}`", value.type_name());
     Err(call.problem_at(path, message, hint.map(ToOwned::to_owned)))
 }
 

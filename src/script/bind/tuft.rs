@@ -146,7 +146,7 @@ pub fn functions() -> Vec<Entry> {
 
 /// Tufts and their material.
 pub fn nouns() -> Vec<Noun> {
-    let methods = vec![
+    let mut methods = vec![
         Entry::positional::<UnionFields>("Tufts:union", "Tufts", union),
         Entry::plain("Tufts:mirrored", "All tufts on the head's other side.", "Tufts", mirrored),
         Entry::table::<RotatedFields>("Tufts:rotated", "Tufts", rotated),
@@ -162,6 +162,7 @@ pub fn nouns() -> Vec<Noun> {
         )
         .sealed("the table of figures"),
     ];
+    methods.extend(super::deform::tufts_methods());
     let getters = vec![Getter {
         name: "count",
         doc: "How many tufts.",
@@ -331,6 +332,17 @@ fn kept(
         call.warn(path, warning.clone());
     }
     Ok(Tufts::new(made.tufts.clone(), &call.source()))
+}
+
+/// Tufts that were moved, lifted out of the head when asked; dips are told.
+pub fn settled(call: &Call, tufts: Tufts, head: &Head, lifts: bool, allowed: f32) -> Result<Tufts> {
+    let sources: Vec<(u64, u16)> = tufts.tufts.iter().map(|t| (t.id, t.source)).collect();
+    let made = settle(call, Made { tufts: tufts.tufts, warnings: vec![] }, head, lifts, allowed)?;
+    for (path, warning) in made.warnings {
+        call.warn(path, warning);
+    }
+    let own = |(tuft, (id, source)): (Tuft, (u64, u16))| Tuft { id, source, ..tuft };
+    Ok(Tufts { tufts: made.tufts.into_iter().zip(sources).map(own).collect(), sources: tufts.sources })
 }
 
 /// Looks for tufts that run through the head: lifts them out when asked, warns of the rest.
