@@ -4,6 +4,7 @@
 
 pub mod bounds;
 pub mod bvh;
+pub mod clear;
 pub mod clip;
 pub mod curtain;
 pub mod curve;
@@ -13,11 +14,13 @@ pub mod mesh;
 pub mod obox;
 pub mod polygon;
 pub mod sample;
+pub mod slide;
 pub mod solid;
 pub mod strands;
 
 pub use bounds::Bounds;
 pub use bvh::{Bvh, Closest, Hit};
+pub use clear::Clear;
 pub use clip::Clip;
 pub use curtain::Curtain;
 pub use mesh::{Group, Mesh, MeshError};
