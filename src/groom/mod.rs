@@ -6,7 +6,6 @@
 //!
 //! The words are those of `docs/glossary.md`; the equations are numbered as in the paper.
 
-mod clear;
 mod domain;
 mod error;
 mod fill;
@@ -18,12 +17,11 @@ mod neighbours;
 mod noise;
 mod queue;
 mod region;
-mod step;
 
 #[cfg(test)]
 mod tests;
 
-pub use clear::{count_inside, is_inside};
+pub use crate::geometry::clear::{count_inside, is_inside};
 pub use domain::{Curl, Directional, Domain, Gather, Measure, NaturalOptions, Turn, Wave};
 pub use error::GroomError;
 pub use fill::{Fill, FillOptions, Separated, fill, member_nodes};

@@ -8,10 +8,10 @@
 use std::ops::Range;
 
 use glam::Vec3;
-
-use super::step::Body;
-use crate::geometry::{Solid, Strands, Vicinity};
 use rayon::prelude::*;
+
+use super::slide::Body;
+use super::{Solid, Strands, Vicinity};
 
 /// Keeps strands out of a body.
 #[derive(Clone, Copy, Debug)]
