@@ -13,12 +13,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use coif::export::StrandForm;
+use coif::export::{Format, StrandForm};
 use coif::render::SheetOptions;
 use coif::scene::View;
 use coif::script::{Disk, Options, Origin};
 use coif::task::Task;
-use coif::workbench::{Report, RunOptions, draft};
+use coif::workbench::{Films, Report, RunOptions, draft};
 
 const SCRIPT: &str = include_str!("../examples/ponytail.lua");
 const CARTOON: &str = include_str!("../examples/cartoon/spiky_hero.lua");
@@ -64,6 +64,8 @@ fn main() {
         strands: StrandForm::None,
         tolerance: 0.05,
         guides: false,
+        formats: vec![Format::Glb],
+        films: Films { moving: true, turntable: false },
         count_inside: false,
         triangles: None,
     };

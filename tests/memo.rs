@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use coif::export::StrandForm;
+use coif::export::{Format, StrandForm};
 use coif::render::SheetOptions;
 use coif::scene::Scene;
 use coif::script::{Ending, Memo, Memory, Options, Origin, Outcome, run};
 use coif::task::Task;
-use coif::workbench::{self, Report, RunOptions};
+use coif::workbench::{self, Films, Report, RunOptions};
 
 const SCRIPT: &str = r##"-- A style that tries every step, and warns.
 local head = coif.head()
@@ -248,6 +248,8 @@ fn workbench(text: &str, memo: &Arc<Memo>) -> (Report, Vec<Vec<u8>>) {
         strands: StrandForm::Ribbons,
         tolerance: 0.05,
         guides: true,
+        formats: vec![Format::Glb],
+        films: Films { moving: true, turntable: false },
         count_inside: false,
         triangles: None,
     };

@@ -38,7 +38,12 @@ fn every_scene_holds() {
 #[test]
 fn every_example_has_a_test_and_a_small_picture() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for (folder, test) in [("examples", "examples_test.lua"), ("examples/cartoon", "cartoon_test.lua")] {
+    let tests = [
+        ("examples", "examples_test.lua"),
+        ("examples/cartoon", "cartoon_test.lua"),
+        ("examples/moving", "moving_test.lua"),
+    ];
+    for (folder, test) in tests {
         let text = std::fs::read_to_string(root.join("tests/scenes").join(test)).unwrap();
         for entry in std::fs::read_dir(root.join(folder)).unwrap() {
             let path = entry.unwrap().path();

@@ -519,6 +519,21 @@ function coif.ring(fields) end
 ---@return coif.HairMaterial
 function coif.material.hair(fields) end
 
+---What `coif.clip` takes.
+---@class (exact) coif.clip.fields
+---@field [integer] coif.Strands # The poses, two or more: strands of the same roots with the same numbers of nodes. The first is the rest.
+---@field seconds? number # Time from each pose to the next. [s; 0.01 to 3600; default 1]
+---@field rate? number # Frames in a second. [1/s; 1 to 240; default 24]
+---@field ease? "smooth"|"linear"|"in"|"out"|"hold" # How each pose is left and come to. [default "smooth"]
+---@field loop? boolean # True to go back from the last pose to the first, over and over. [default false]
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.05]
+
+---Strands on their way through poses: the same strands, styled in different ways. Strands bend from pose to pose
+---and keep their length.
+---@param fields coif.clip.fields
+---@return coif.StrandsClip
+function coif.clip(fields) end
+
 ---What `coif.scene` takes.
 ---@class (exact) coif.scene.fields
 ---@field [integer] any # The head and the hair, in any number and order; lists in the list are taken apart.
@@ -798,6 +813,47 @@ local StrandsClip = {}
 ---@return coif.Strands
 function StrandsClip:frame(frame) end
 
+---What `StrandsClip:natural` takes.
+---@class (exact) coif.StrandsClip.natural.fields
+---@field [integer] coif.Domain # The natural domains.
+---@field where? fun(root: vector): boolean # Takes a strand's root (a vector), returns true for the strands to change; all when left out.
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.05]
+---@field seed? number # Another seed gives other random numbers. [whole; default 0]
+
+---Lays waves and curls over strands in motion, as `Strands:natural` over strands. Each domain acts at every frame
+---on the part of a strand that is inside its box at rest.
+---@param fields coif.StrandsClip.natural.fields
+---@return coif.StrandsClip
+function StrandsClip:natural(fields) end
+
+---What `StrandsClip:fill` takes.
+---@class (exact) coif.StrandsClip.fill.fields
+---@field strands? number # How many strands. [whole; 1 or more; default 40000]
+---@field nodes? number # Nodes per strand; when left out as many as the guides' bends need, at most as many as the guides have or 128. [whole; 2 to 4096]
+---@field neighbours? number # How many guides a strand follows at most. [whole; 1 to 8; default 4]
+---@field length_variation? number # How much shorter strands may be than their guides, as a part of the length. [0 to 1; default 0.05]
+---@field noise? number # Standard deviation of the gaussian noise on the tangents, smooth along the strand. [0 to 10; default 0.02]
+---@field flyaway? number # Part of the strands that stray, with six times the noise. [0 to 1; default 0]
+---@field clump? number # How far strands gather round their guide: 0 leaves them evenly spread, 1 brings all tips to the guide's tip. [0 to 1; default 0]
+---@field clump_start? number # Where along the strand gathering begins, as a part of the length. [0 to 0.95; default 0]
+---@field thickness? number # Depth of the layer of hair over the guides. [cm; 0 to 20; default 0.4]
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.03]
+---@field seed? number # Another seed gives other random numbers. [whole; default 0]
+---@field density? number # Strands per square centimetre, instead of `strands`. [1/cm^2; 0.0001 to 100000]
+---@field region? coif.Region # Where to fill; where the guides grow when left out.
+---@field material? coif.HairMaterial|coif.material.hair.fields # How the hair looks: `coif.material.hair { ... }`.
+
+---Fills the scalp with strands between guides in motion, as `Strands:fill` between guides. A strand follows the
+---same guides by the same parts at every frame.
+---@param fields? coif.StrandsClip.fill.fields
+---@return coif.StrandsClip
+function StrandsClip:fill(fields) end
+
+---The same strands with another look.
+---@param material coif.HairMaterial|coif.material.hair.fields # `coif.material.hair { ... }`, or its fields.
+---@return coif.StrandsClip
+function StrandsClip:material(material) end
+
 ---Figures: `frames`, `seconds`, `strands`, `points`, `guides`, `travel` (cm, the farthest that a node comes from
 ---where it is in the first frame), `stretch` (the greatest part by which a strand's length differs from that in
 ---the first frame), `min` and `max` (corners of the bounding box of all frames).
@@ -923,8 +979,9 @@ function Test:run(script, parameters) end
 
 ---A scene that the test itself made, with its parts by name.
 ---@param scene coif.Scene # What `coif.scene` gave.
+---@param frame? number # Of a scene that moves, which frame, from 1; the one that its still pictures show when left out. [whole; 1 to 1000000000]
 ---@return coif.TestScene
-function Test:scene(scene) end
+function Test:scene(scene, frame) end
 
 ---Expects two values to be the same: numbers, texts, vectors, or tables of them, entry by entry.
 ---@param got? any # What there is.
@@ -982,6 +1039,7 @@ function Test:error(body, text) end
 ---@field size? number # Width of one view in pixels; its height is nine eighths of it. [whole; px; 16 to 1024; default 120]
 ---@field tolerance? number # How far a channel of a pixel may differ, out of 255. [whole; 0 to 255; default 1]
 ---@field background? "white"|"dark" # The colour behind everything, instead of the scene's own.
+---@field frame? number # Of a scene that moves, which frame, from 1; the scene's own when left out. [whole; 1 to 1000000000]
 
 ---Expects the preview of a scene to be the golden picture `golden/NAME.png` beside the test.
 ---@param scene coif.TestScene|coif.Scene # What `t:run` gave, or a scene.
@@ -1001,6 +1059,12 @@ local TestScene = {}
 ---@param parameters table<string, any> # Parameters by name.
 ---@return coif.TestScene
 function TestScene:with(parameters) end
+
+---A scene that moves as it is at a frame; its figures are then those of that frame. Without it they are those of
+---the frame that still pictures show.
+---@param frame number # Which frame, from 1; past the end a loop begins anew, anything else stands still. [whole; 1 to 1000000000]
+---@return coif.TestScene
+function TestScene:at(frame) end
 
 ---The figures of all parts together; see `TestPart:stats`.
 ---@return table<string, any>

@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::proof::{DiffArguments, SheetArguments, TestArguments};
 use super::show::Show;
-use crate::export::StrandForm;
+use crate::export::{Format, StrandForm};
 use crate::head::load::Unit;
 use crate::scene::{Background, View};
 use crate::script::{Limits, limits};
@@ -125,6 +125,15 @@ pub struct RunArguments {
     /// Width of one view in pixels
     #[arg(long, value_name = "PX", default_value_t = 640, value_parser = clap::value_parser!(u32).range(16..=8192))]
     pub size: u32,
+    /// Files for other programs [glb, usda, hair]; NAME.glb alone when left out
+    #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', default_value = "glb", value_parser = format)]
+    pub format: Vec<Format>,
+    /// Write NAME.turntable.png too: an animated picture that goes once around the head
+    #[arg(long)]
+    pub turntable: bool,
+    /// Of a scene that moves, write neither NAME.strip.png nor NAME.anim.png
+    #[arg(long)]
+    pub still: bool,
     /// What strands become in the GLB [ribbons, lines, none]
     #[arg(long, value_name = "FORM", default_value = "ribbons", value_parser = form)]
     pub strands: StrandForm,
@@ -236,6 +245,10 @@ fn unit(text: &str) -> Result<Unit, String> {
 
 fn form(text: &str) -> Result<StrandForm, String> {
     choice(text, StrandForm::TEXTS, StrandForm::parse)
+}
+
+fn format(text: &str) -> Result<Format, String> {
+    choice(text, Format::TEXTS, Format::parse)
 }
 
 fn show(text: &str) -> Result<Show, String> {

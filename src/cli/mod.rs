@@ -18,10 +18,10 @@ use std::sync::Arc;
 
 use clap::Parser;
 
-use crate::export::StrandForm;
+use crate::export::{Format, StrandForm};
 use crate::render::SheetOptions;
 use crate::script::{self, Disk, Ending, Outcome, show_all};
-use crate::workbench::{self, NewError, RunError, RunOptions};
+use crate::workbench::{self, Films, NewError, RunError, RunOptions};
 
 use args::{ApiArguments, Arguments, Command, NewArguments, ParamsArguments, RunArguments, ScriptArguments};
 use progress::Progress;
@@ -74,9 +74,22 @@ fn run_options(arguments: &RunArguments) -> RunOptions {
         strands: arguments.strands,
         tolerance: arguments.tolerance,
         guides: arguments.guides && arguments.strands != StrandForm::None,
+        formats: formats(&arguments.format),
+        films: Films { moving: !arguments.still, turntable: arguments.turntable },
         count_inside: arguments.stats,
         triangles: arguments.triangles.map(|n| n as usize),
     }
+}
+
+/// Each once, in the order given.
+fn formats(given: &[Format]) -> Vec<Format> {
+    let mut formats = vec![];
+    for &format in given {
+        if !formats.contains(&format) {
+            formats.push(format);
+        }
+    }
+    formats
 }
 
 fn command_run(arguments: &RunArguments) -> u8 {

@@ -25,6 +25,16 @@ pub enum ExportError {
         /// What is wrong with it.
         error: MeshError,
     },
+    /// A frame of a part that moves does not fit it.
+    #[error("part `{part}`: frame {frame} {what}")]
+    Motion {
+        /// Name of the part.
+        part: String,
+        /// From 1.
+        frame: usize,
+        /// What is wrong with it.
+        what: &'static str,
+    },
     /// Strands are broken.
     #[error("part `{part}`: {error}")]
     Strands {

@@ -22,9 +22,30 @@ pub use usda::{UsdaOptions, usda};
 
 use std::borrow::Cow;
 
+use glam::Vec3;
+
 use crate::geometry::strands::StrandsError;
 use crate::geometry::{Mesh, Strands};
-use crate::scene::{Hair, Part};
+use crate::scene::{Body, Hair, Motion, Part};
+
+crate::choices! {
+    /// A file format.
+    pub enum Format {
+        /// Binary glTF: surfaces, and strands as ribbons or lines.
+        Glb = "glb",
+        /// USD as text: surfaces, strands and guides as curves.
+        Usda = "usda",
+        /// The `.hair` format: strands alone.
+        Hair = "hair",
+    }
+}
+
+impl Format {
+    /// What the names of its files end in, without a dot.
+    pub const fn ending(self) -> &'static str {
+        self.text()
+    }
+}
 
 /// Checks what every format relies on: finite nodes, and no strand that names a guide or source that is not there.
 fn check_hair(part: &Part, hair: &Hair) -> Result<(), ExportError> {
@@ -42,6 +63,39 @@ fn check_hair(part: &Part, hair: &Hair) -> Result<(), ExportError> {
             let index = hair.strands.guide[strand];
             Err(ExportError::Dangling { part: part.name.clone(), strand, what: "guide", index, count })
         }
+        None => Ok(()),
+    }
+}
+
+/// Checks what no frame may have: other topology, numbers that are none.
+///
+/// # Errors
+/// [`ExportError::Motion`] with the frame.
+fn check_motion(part: &Part) -> Result<(), ExportError> {
+    let Some(motion) = &part.motion else { return Ok(()) };
+    let bad =
+        |frame: usize, what: &'static str| Err(ExportError::Motion { part: part.name.clone(), frame: frame + 1, what });
+    let points = |what: &[Vec3]| what.iter().all(|p| p.is_finite());
+    let count = match (&part.body, motion) {
+        (Body::Mesh(mesh, _), _) => mesh.positions.len(),
+        (Body::Locks(locks), _) => locks.mesh.mesh.positions.len(),
+        (Body::Hair(hair), _) => hair.strands.points.len(),
+    };
+    let found = match motion {
+        Motion::Rigid(clip) => clip.frames.iter().position(|t| !t.is_finite()).map(|f| (f, "is not finite")),
+        Motion::Surface(clip) => clip.frames.iter().enumerate().find_map(|(i, f)| match f {
+            f if f.len() != count => Some((i, "has another number of vertices than the part at rest")),
+            f if !points(f) => Some((i, "is not finite")),
+            _ => None,
+        }),
+        Motion::Strands { strands, .. } => strands.frames.iter().enumerate().find_map(|(i, f)| match f {
+            f if f.points.len() != count => Some((i, "has another number of nodes than the part at rest")),
+            f if !points(&f.points) => Some((i, "is not finite")),
+            _ => None,
+        }),
+    };
+    match found {
+        Some((frame, what)) => bad(frame, what),
         None => Ok(()),
     }
 }

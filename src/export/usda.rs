@@ -2,8 +2,10 @@
 //!
 //! Centimetres, Y up. The curves carry what the programs read that take them: widths (diameters) per node, root uv as
 //! `st`, as `surface_uv_coordinate` (Blender) and as `groom_root_uv` (Unreal), ids and guides as `groom_id` and
-//! `groom_guide`, one colour per strand. Numbers have five decimals: a tenth of a micrometre.
+//! `groom_guide`, one colour per strand. What moves has time
+//! samples, one time code to a frame. Numbers have five decimals: a tenth of a micrometre.
 
+mod motion;
 mod text;
 
 use glam::Vec3;
@@ -15,7 +17,7 @@ use crate::task::{Cancelled, Task};
 
 use self::text::{Names, decimal, quoted, tuple};
 use super::reduce::{Block, reduce};
-use super::{ExportError, appearance, check_hair, check_tolerance, with_normals};
+use super::{ExportError, appearance, check_hair, check_motion, check_tolerance, with_normals};
 
 crate::params! {
     /// How a scene is written as USD.
@@ -46,17 +48,25 @@ pub fn usda(scene: &Scene, options: &UsdaOptions, task: &Task) -> Result<Vec<u8>
         return Err(ExportError::Placement { placement: scene.placement });
     }
     let mut names = Names::default();
-    let mut out = Writer { bytes: Vec::new(), limit: options.max_bytes };
+    let timeline = scene.timeline();
+    let frames = timeline.map_or(0, |t| t.frames);
+    let mut out = Writer { bytes: Vec::new(), limit: options.max_bytes, frames };
     let root = Names::default().take(&scene.name);
     let looks = names.take("Looks");
     out.line(0, "#usda 1.0")?;
     out.line(0, &format!("(\n    defaultPrim = \"{root}\"\n    doc = \"coif {}\"", env!("CARGO_PKG_VERSION")))?;
+    if let Some(t) = timeline {
+        let (last, rate) = (t.frames - 1, t.rate);
+        out.line(1, &format!("startTimeCode = 0\nendTimeCode = {last}"))?;
+        out.line(1, &format!("timeCodesPerSecond = {rate}\nframesPerSecond = {rate}"))?;
+    }
     out.line(0, "    metersPerUnit = 0.01\n    upAxis = \"Y\"\n)\n")?;
     out.line(0, &format!("def Xform \"{root}\" (\n    kind = \"component\"\n)\n{{"))?;
     out.placement(scene)?;
     let mut materials = Vec::new();
     for (i, part) in scene.parts.iter().enumerate() {
         task.progress("writing usda", i as f32 / scene.parts.len() as f32);
+        check_motion(part)?;
         let name = names.take(&part.name);
         let binding = format!("rel material:binding = </{root}/{looks}/{name}>");
         match &part.body {
@@ -114,6 +124,8 @@ fn strand(hair: &Hair) -> String {
 struct Writer {
     bytes: Vec<u8>,
     limit: u64,
+    /// Frames of a scene that moves, else 0.
+    frames: usize,
 }
 
 impl Writer {
@@ -150,7 +162,20 @@ impl Writer {
         tail: &str,
         task: &Task,
     ) -> Result<(), ExportError> {
-        self.bytes.extend_from_slice(format!("        {head} = [").as_bytes());
+        self.list(&format!("        {head} = "), items, item, tail, task)
+    }
+
+    /// The same after any text; a line of its own.
+    fn list<T: Sync>(
+        &mut self,
+        before: &str,
+        items: &[T],
+        item: impl Fn(&mut Vec<u8>, &T) + Sync,
+        tail: &str,
+        task: &Task,
+    ) -> Result<(), ExportError> {
+        self.bytes.extend_from_slice(before.as_bytes());
+        self.bytes.push(b'[');
         // Some pieces at a time, so that the limit holds and no second copy of everything exists.
         for (k, some) in items.chunks(1 << 18).enumerate() {
             let pieces: Vec<Vec<u8>> = some
@@ -218,6 +243,7 @@ impl Writer {
         if !mesh.uvs.is_empty() {
             self.array("texCoord2f[] primvars:st", &mesh.uvs, |o, uv| tuple(o, &uv.to_array()), VERTEX, task)?;
         }
+        self.mesh_moves(part, mesh, task)?;
         self.line(1, "}")
     }
 
@@ -281,6 +307,7 @@ impl Writer {
         )?;
         let source = |o: &mut Vec<u8>, i: usize| number(o, usize::from(strands.source[i]));
         self.array("int[] primvars:coif_source", &each, |o, &(i, _)| source(o, i), UNIFORM, task)?;
+        self.curves_move(part, &each, is_guide, widest, task)?;
         self.line(1, "}")
     }
 

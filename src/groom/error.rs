@@ -70,6 +70,29 @@ pub enum GroomError {
         /// How many there should be.
         expected: usize,
     },
+    /// A frame of a clip has other strands than those at rest.
+    #[error("frame {frame} has other strands, or other numbers of nodes, than the strands at rest")]
+    Topology {
+        /// From 1.
+        frame: usize,
+    },
+    /// A clip that takes more memory than it should.
+    #[error(
+        "`{strands}` strands with {nodes} nodes in all over {frames} frames would take about {gigabytes:.1} GB; at most \
+         {limit} are allowed"
+    )]
+    Clip {
+        /// How many strands.
+        strands: usize,
+        /// How many nodes all of them have.
+        nodes: usize,
+        /// How many frames.
+        frames: usize,
+        /// Memory they would take, in 10^9 bytes.
+        gigabytes: f64,
+        /// Memory they may take, in 10^9 bytes.
+        limit: f64,
+    },
     /// The guides are no proper strands.
     #[error(transparent)]
     Strands(#[from] crate::geometry::StrandsError),
@@ -88,7 +111,13 @@ impl GroomError {
             } else {
                 "directional and gather domains go into a queue for `guides:grow { ... }`".into()
             }),
-            Self::Cancelled(_) | Self::Value { .. } | Self::Count { .. } | Self::Strands(_) => None,
+            Self::Clip { strands, gigabytes, limit, .. } => {
+                let fit = (*strands as f64 * limit / gigabytes / 1000.0).floor() * 1000.0;
+                Some(format!("about {fit} strands would fit; fewer nodes, frames, or a lower rate help too"))
+            }
+            Self::Cancelled(_) | Self::Topology { .. } | Self::Value { .. } | Self::Count { .. } | Self::Strands(_) => {
+                None
+            }
         }
     }
 }

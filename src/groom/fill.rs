@@ -82,6 +82,64 @@ const KNOTS: usize = 8;
 /// # Errors
 /// No guides or roots, numbers out of range, too many strands or nodes, or the task was cancelled.
 pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
+    let nodes = check(input)?;
+    let n = input.roots.len();
+    let guides = Prepared::new(input.guides, nodes, input.options.thickness, None).agreeing(input.guides);
+    task.check()?;
+    let mut strands = Strands {
+        points: vec![Vec3::ZERO; n * nodes],
+        stage: vec![0; n * nodes],
+        offsets: (0..=n).map(|i| (i * nodes) as u32).collect(),
+        roots: input.roots.to_vec(),
+        guide: vec![0; n],
+        source: vec![0; n],
+        sources: vec![Arc::clone(input.source)],
+    };
+    // Guide of each member, or why it has none.
+    const ALONE: u32 = u32::MAX;
+    const STUCK: u32 = u32::MAX - 1;
+    let followed: Vec<AtomicU32> = (0..n).map(|_| AtomicU32::new(ALONE)).collect();
+    layout::write_all(&mut strands, task, "filling", Worker::default, |worker, i, points, stages| {
+        let Some(guide) = worker.choose(input, &guides, &input.roots[i]) else { return };
+        worker.grow(input, &guides, guide, &input.roots[i], points);
+        let mut answer = guide as u32;
+        if let Some(solid) = input.solid {
+            let clear = Clear { body: Body { solid, margin: input.options.margin } };
+            if clear.strand(points, &mut worker.scratch) == Outcome::Stuck {
+                answer = STUCK;
+            }
+        }
+        stages.copy_from_slice(&guides.stages[guide * nodes..(guide + 1) * nodes]);
+        followed[i].store(answer, Ordering::Relaxed);
+    })?;
+    task.progress("filling", 1.0);
+
+    strands.guide = followed.iter().map(|g| g.load(Ordering::Relaxed)).collect();
+    let count = |what: u32| strands.guide.iter().filter(|&&g| g == what).count();
+    let (alone, stuck) = (count(ALONE), count(STUCK));
+    let warnings = left_out(alone, stuck, n);
+    if alone + stuck > 0 {
+        let counts: Vec<usize> = strands.guide.iter().map(|&g| if g >= STUCK { 0 } else { nodes }).collect();
+        layout::compact(&mut strands, &counts);
+    }
+    Ok(Warned { value: strands, warnings })
+}
+
+/// What is said of members that did not grow.
+pub(super) fn left_out(alone: usize, stuck: usize, all: usize) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    if alone > 0 {
+        let message = format!("`{alone}` of {all} strands were left out: no guide grows on their side of the parting");
+        warnings.push(Warning::new(message).hint("ask for more guides, or move the parting"));
+    }
+    if stuck > 0 {
+        warnings.push(stuck_warning(stuck, all, "strands"));
+    }
+    warnings
+}
+
+/// Refuses what cannot be filled; how many nodes the members get.
+pub(super) fn check(input: &Fill) -> Result<usize, GroomError> {
     let options = input.options;
     input.guides.validate()?;
     for (what, count) in [("guides", input.guides.count()), ("roots", input.roots.len())] {
@@ -103,59 +161,8 @@ pub fn fill(input: &Fill, task: &Task) -> Result<Warned<Strands>, GroomError> {
     let nodes = member_nodes(input.guides, options);
     let n = input.roots.len();
     check_size(n as u64, n as u64 * nodes as u64)?;
-
     input.roots.iter().try_for_each(check_root)?;
-
-    let guides = Prepared::new(input.guides, nodes, options.thickness);
-    task.check()?;
-    let mut strands = Strands {
-        points: vec![Vec3::ZERO; n * nodes],
-        stage: vec![0; n * nodes],
-        offsets: (0..=n).map(|i| (i * nodes) as u32).collect(),
-        roots: input.roots.to_vec(),
-        guide: vec![0; n],
-        source: vec![0; n],
-        sources: vec![Arc::clone(input.source)],
-    };
-    // Guide of each member, or why it has none.
-    const ALONE: u32 = u32::MAX;
-    const STUCK: u32 = u32::MAX - 1;
-    let followed: Vec<AtomicU32> = (0..n).map(|_| AtomicU32::new(ALONE)).collect();
-    layout::write_all(&mut strands, task, "filling", Worker::default, |worker, i, points, stages| {
-        let Some(guide) = worker.choose(input, &guides, &input.roots[i]) else { return };
-        worker.grow(input, &guides, guide, &input.roots[i], points);
-        let mut answer = guide as u32;
-        if let Some(solid) = input.solid {
-            let clear = Clear { body: Body { solid, margin: options.margin } };
-            if clear.strand(points, &mut worker.scratch) == Outcome::Stuck {
-                answer = STUCK;
-            }
-        }
-        stages.copy_from_slice(&guides.stages[guide * nodes..(guide + 1) * nodes]);
-        followed[i].store(answer, Ordering::Relaxed);
-    })?;
-    task.progress("filling", 1.0);
-
-    strands.guide = followed.iter().map(|g| g.load(Ordering::Relaxed)).collect();
-    let count = |what: u32| strands.guide.iter().filter(|&&g| g == what).count();
-    let (alone, stuck) = (count(ALONE), count(STUCK));
-    let mut warnings = Vec::new();
-    if alone > 0 {
-        warnings.push(
-            Warning::new(format!(
-                "`{alone}` of {n} strands were left out: no guide grows on their side of the parting"
-            ))
-            .hint("ask for more guides, or move the parting"),
-        );
-    }
-    if stuck > 0 {
-        warnings.push(stuck_warning(stuck, n, "strands"));
-    }
-    if alone + stuck > 0 {
-        let counts: Vec<usize> = strands.guide.iter().map(|&g| if g >= STUCK { 0 } else { nodes }).collect();
-        layout::compact(&mut strands, &counts);
-    }
-    Ok(Warned { value: strands, warnings })
+    Ok(nodes)
 }
 
 /// Nodes that every member has.
@@ -173,7 +180,7 @@ const LONGEST: f32 = 1.2;
 /// Nodes that a member needs to follow the bends of the guides: an arc of curvature k with segments of length h is left
 /// by k h^2 / 8 and turns by k h. Of a guide's curvatures and of the guides the sharpest tenth does not count, for they
 /// may have kinks.
-fn usual_nodes(guides: &Strands) -> usize {
+pub(super) fn usual_nodes(guides: &Strands) -> usize {
     let most = (0..guides.count()).map(|g| guides.range(g).len()).max().unwrap_or(2).min(128);
     let mut wanted: Vec<f32> = (0..guides.count())
         .into_par_iter()
@@ -204,7 +211,7 @@ fn nine_tenths(values: &mut [f32]) -> f32 {
 }
 
 /// Guides with equally many nodes each, and what members ask of them.
-struct Prepared {
+pub(super) struct Prepared {
     nodes: usize,
     /// Per guide and node.
     points: Vec<Vec3>,
@@ -214,8 +221,10 @@ struct Prepared {
     planes: Vec<f32>,
     /// Per guide and node: where the layer of hair rises to, away from the head, with length 1 but near the root.
     lifts: Vec<Vec3>,
+    /// Per guide: the direction in which its frame starts.
+    pub(super) firsts: Vec<Vec3>,
     /// Per guide and node.
-    stages: Vec<u8>,
+    pub(super) stages: Vec<u8>,
     lengths: Vec<f32>,
     nearest: Nearest,
     /// Per guide: how far the guides near it agree with it.
@@ -223,13 +232,15 @@ struct Prepared {
 }
 
 impl Prepared {
-    fn new(guides: &Strands, nodes: usize, thickness: f32) -> Self {
+    /// With guides in motion, `firsts` are those of the guides at rest: the frames then turn with the guides, and never
+    /// by what the guides' bends would say anew.
+    pub(super) fn new(guides: &Strands, nodes: usize, thickness: f32, firsts: Option<&[Vec3]>) -> Self {
         let n = guides.count();
         let mut points = vec![Vec3::ZERO; n * nodes];
         let mut tangents = vec![Vec3::ZERO; n * (nodes - 1)];
         let mut lifts = vec![Vec3::ZERO; n * nodes];
         let mut stages = vec![0; n * nodes];
-        let lengths = points
+        let (lengths, firsts) = points
             .par_chunks_mut(nodes)
             .zip(tangents.par_chunks_mut(nodes - 1))
             .zip(lifts.par_chunks_mut(nodes).zip(stages.par_chunks_mut(nodes)))
@@ -247,7 +258,10 @@ impl Prepared {
                         *t = last;
                     }
                     frames::tangents(points, smooth);
-                    let first = first_normal(points, smooth[0], &guides.roots[g]);
+                    let first = match firsts.and_then(|f| f.get(g)) {
+                        Some(&rest) => frames::perpendicular(rest, smooth[0]),
+                        None => first_normal(points, smooth[0], &guides.roots[g]),
+                    };
                     frames::normals(points, smooth, first, lifts);
                     let length = curve::length(points);
                     // The layer has its depth after four times that much.
@@ -255,10 +269,10 @@ impl Prepared {
                         let s = length * j as f32 / (nodes - 1) as f32;
                         *lift *= trig::smoothstep(0.0, 4.0 * thickness.max(1e-3), s);
                     }
-                    length
+                    (length, first)
                 },
             )
-            .collect();
+            .unzip();
         let nearest = Nearest::new(guides.roots.iter().map(|r| r.position).collect());
         let mut planes = Vec::with_capacity(tangents.len() * 3);
         for strand in tangents.chunks(nodes - 1) {
@@ -266,16 +280,19 @@ impl Prepared {
                 planes.extend(strand.iter().map(|t| t[axis]));
             }
         }
-        let mut prepared =
-            Self { nodes, points, tangents, planes, lifts, stages, lengths, nearest, agreements: Vec::new() };
-        prepared.agreements = (0..n)
+        Self { nodes, points, tangents, planes, lifts, firsts, stages, lengths, nearest, agreements: Vec::new() }
+    }
+
+    /// With what members need for choosing guides.
+    pub(super) fn agreeing(mut self, guides: &Strands) -> Self {
+        self.agreements = (0..self.lengths.len())
             .into_par_iter()
             .map_init(Vec::new, |found, g| {
-                prepared.nearest.find(guides.roots[g].position, NEAR, found);
-                found.iter().map(|&(_, other)| (other, prepared.agree(g, other as usize))).collect()
+                self.nearest.find(guides.roots[g].position, NEAR, found);
+                found.iter().map(|&(_, other)| (other, self.agree(g, other as usize))).collect()
             })
             .collect();
-        prepared
+        self
     }
 
     fn agree(&self, a: usize, b: usize) -> f32 {
@@ -291,20 +308,20 @@ impl Prepared {
 
 /// One thread's memory.
 #[derive(Default)]
-struct Worker {
+pub(super) struct Worker {
     found: Vec<(f32, u32)>,
     /// Guides on this side, nearest first: distance and index.
     near: Vec<(f32, u32)>,
     /// Guides that the member follows, and their weights, which sum to 1.
-    weights: Vec<(usize, f32)>,
+    pub(super) weights: Vec<(usize, f32)>,
     /// The mixed tangents: all x, all y, all z.
     mix: Vec<f32>,
-    scratch: Scratch,
+    pub(super) scratch: Scratch,
 }
 
 impl Worker {
     /// Chooses the guides of a member and their weights; the one it follows most, if there is any.
-    fn choose(&mut self, input: &Fill, guides: &Prepared, root: &Root) -> Option<usize> {
+    pub(super) fn choose(&mut self, input: &Fill, guides: &Prepared, root: &Root) -> Option<usize> {
         let wanted = input.options.neighbours.clamp(1, MOST);
         let count = guides.lengths.len();
         // First a few near ones; where partings take them all, every guide.
@@ -354,7 +371,7 @@ impl Worker {
     }
 
     /// Integrates the mixed tangents from the member's own root.
-    fn grow(&mut self, input: &Fill, guides: &Prepared, guide: usize, root: &Root, out: &mut [Vec3]) {
+    pub(super) fn grow(&mut self, input: &Fill, guides: &Prepared, guide: usize, root: &Root, out: &mut [Vec3]) {
         let options = input.options;
         let nodes = guides.nodes;
         let segments = nodes - 1;

@@ -394,6 +394,12 @@ pub struct Deform<'a> {
 /// # Errors
 /// No or bad strands, numbers out of range, too many nodes, or the task was cancelled.
 pub fn deform(input: &Deform, task: &Task) -> Result<Warned<Strands>, GroomError> {
+    deform_frame(input, None, task)
+}
+
+/// The same for a frame of a clip whose strands are `rest` at rest, which are of one topology: each domain acts on the
+/// part of a strand that is in its box at rest, so that waves do not run along strands that move.
+pub(super) fn deform_frame(input: &Deform, rest: Option<&Strands>, task: &Task) -> Result<Warned<Strands>, GroomError> {
     let from = input.strands;
     from.validate()?;
     let n = from.count();
@@ -406,7 +412,7 @@ pub fn deform(input: &Deform, task: &Task) -> Result<Warned<Strands>, GroomError
     }
 
     let entered = Entered::new(input.queue.domains.len());
-    let counts = count_nodes(input, &entered, task)?;
+    let counts = count_nodes(&Deform { strands: rest.unwrap_or(from), ..*input }, &entered, task)?;
     check_size(n as u64, counts.iter().map(|&c| c as u64).sum())?;
     let offsets = layout::offsets(counts.iter().copied());
     let nodes = offsets.last().map_or(0, |&o| o as usize);
@@ -421,7 +427,7 @@ pub fn deform(input: &Deform, task: &Task) -> Result<Warned<Strands>, GroomError
     };
     let stuck: Vec<std::sync::atomic::AtomicBool> = (0..n).map(|_| false.into()).collect();
     layout::write_all(&mut strands, task, "waving and curling", Worker::default, |worker, i, points, stages| {
-        if worker.strand(input, i, points, stages) == Outcome::Stuck {
+        if worker.strand(input, rest, i, points, stages) == Outcome::Stuck && rest.is_none() {
             stuck[i].store(true, std::sync::atomic::Ordering::Relaxed);
         }
     })?;
@@ -490,6 +496,8 @@ pub fn first_normal(points: &[Vec3], tangent: Vec3, root: &Root) -> Vec3 {
 #[derive(Default)]
 struct Worker {
     resampler: Resampler,
+    /// The strand at rest.
+    axis: Vec<Vec3>,
     tangents: Vec<Vec3>,
     normals: Vec<Vec3>,
     lengths: Vec<f32>,
@@ -498,7 +506,14 @@ struct Worker {
 }
 
 impl Worker {
-    fn strand(&mut self, input: &Deform, i: usize, out: &mut [Vec3], stages: &mut [u8]) -> Outcome {
+    fn strand(
+        &mut self,
+        input: &Deform,
+        rest: Option<&Strands>,
+        i: usize,
+        out: &mut [Vec3],
+        stages: &mut [u8],
+    ) -> Outcome {
         let from = input.strands;
         let points = from.strand(i);
         let old_stages = if from.stage.is_empty() { &[][..] } else { &from.stage[from.range(i)] };
@@ -513,23 +528,53 @@ impl Worker {
         if !input.which.get(i).copied().unwrap_or(true) {
             return Outcome::Clear;
         }
-        input.queue.intervals(out, None, &mut self.intervals);
+        let root = &from.roots[i];
+        let first = match rest {
+            Some(rest) => self.at_rest(input, rest, i, out),
+            None => {
+                input.queue.intervals(out, None, &mut self.intervals);
+                None
+            }
+        };
         if self.intervals.is_empty() {
             return Outcome::Clear;
         }
-        self.displace(input, &from.roots[i], out);
+        self.displace(input, root, first, out);
         match input.solid {
             Some(solid) => Clear { body: Body { solid, margin: input.margin } }.strand(out, &mut self.scratch),
             None => Outcome::Clear,
         }
     }
 
-    fn displace(&mut self, input: &Deform, root: &Root, points: &mut [Vec3]) {
+    /// Finds where domains act on a strand at rest, for the strand as it is now, and in which direction its frame starts.
+    fn at_rest(&mut self, input: &Deform, rest: &Strands, i: usize, now: &[Vec3]) -> Option<Vec3> {
+        let (points, n) = (rest.strand(i), now.len());
+        self.axis.resize(n, Vec3::ZERO);
+        if points.len() == n {
+            self.axis.copy_from_slice(points);
+        } else {
+            self.resampler.uniform(points, &mut self.axis, |_, _| ());
+        }
+        input.queue.intervals(&self.axis, None, &mut self.intervals);
+        let longer = curve::length(now) / curve::length(&self.axis).max(1e-6);
+        for interval in &mut self.intervals {
+            (interval.s0, interval.s1) = (interval.s0 * longer, interval.s1 * longer);
+        }
+        self.tangents.resize(n, Vec3::ZERO);
+        frames::tangents(&self.axis, &mut self.tangents[..n]);
+        Some(first_normal(&self.axis, self.tangents[0], rest.roots.get(i)?))
+    }
+
+    /// `first` is the direction in which the frame starts, when that is known already.
+    fn displace(&mut self, input: &Deform, root: &Root, first: Option<Vec3>, points: &mut [Vec3]) {
         let n = points.len();
         self.tangents.resize(n, Vec3::ZERO);
         self.normals.resize(n, Vec3::ZERO);
         frames::tangents(points, &mut self.tangents[..n]);
-        let first = first_normal(points, self.tangents[0], root);
+        let first = match first {
+            Some(first) => frames::perpendicular(first, self.tangents[0]),
+            None => first_normal(points, self.tangents[0], root),
+        };
         frames::normals(points, &self.tangents[..n], first, &mut self.normals[..n]);
         let mut s = 0.0;
         self.lengths.clear();

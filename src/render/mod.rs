@@ -3,8 +3,10 @@
 //! [`sheet()`] does everything; it sees only a [`Scene`](crate::scene::Scene). The way of the data: [`camera`] frames the
 //! views; [`shadow`] finds how much light reaches each place; [`surface`] draws the head, [`toon`] draws it in flat tones with ink lines; [`strands`] projects and
 //! simplifies the hair, [`raster`] lays it down front to back, [`shade`] gives it colour; [`overlay`] makes the debug
-//! view; [`lettering`] writes; [`png`] codes. [`mod@contact`] lays pictures out, [`mod@compare`] tells how far two differ.
+//! view; [`lettering`] writes; [`png`] codes. [`mod@contact`] lays pictures out,
+//! [`animation`] draws scenes that move frame by frame, [`mod@strip`] sets some of the frames side by side, [`mod@compare`] tells how far two differ.
 
+pub mod animation;
 pub mod camera;
 pub mod compare;
 pub mod contact;
@@ -17,6 +19,7 @@ pub mod shade;
 pub mod shadow;
 pub mod sheet;
 pub mod strands;
+pub mod strip;
 pub mod surface;
 pub mod toon;
 
@@ -27,3 +30,4 @@ pub use compare::{Difference, compare};
 pub use contact::{Cell, contact};
 pub use png::{PngError, Speed};
 pub use sheet::{Picture, RenderError, SheetOptions, sheet, views};
+pub use strip::strip;

@@ -58,7 +58,14 @@ fn ball(r: f32) -> Part {
 }
 
 fn scene(parts: Vec<Part>, views: &[View]) -> Scene {
-    Scene { name: "test".into(), parts, views: views.to_vec(), look: Look::default(), placement: Affine3A::IDENTITY, shown: Shown::default() }
+    Scene {
+        name: "test".into(),
+        parts,
+        views: views.to_vec(),
+        look: Look::default(),
+        placement: Affine3A::IDENTITY,
+        shown: Shown::default(),
+    }
 }
 
 fn bare(width: u32, height: u32) -> SheetOptions {

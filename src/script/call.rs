@@ -15,7 +15,7 @@ use super::session::{Raised, Session, Timing};
 use super::source::CallText;
 use super::{Diagnostic, Frame, Severity, protect, strict, trace};
 use crate::geometry::{Root, Strands};
-use crate::groom::GroomError;
+use crate::groom::{GroomError, Moving};
 use crate::math::{Digest, rng::Key};
 use crate::params::{self, Function, Handle, Object, Params, Problem, Reader, Table, Value};
 use crate::task::{Task, Warned, Warning};
@@ -342,6 +342,26 @@ impl Call<'_> {
         let revise = |strands: &mut Arc<Strands>| {
             if strands.sources != sources {
                 Arc::make_mut(strands).sources = sources.to_vec();
+            }
+        };
+        self.memo_revised(key, revise, compute)
+    }
+
+    /// The same for strands in motion.
+    ///
+    /// # Errors
+    /// What `compute` raised.
+    pub fn memo_moving(
+        &self,
+        key: &Digest,
+        sources: &[Arc<str>],
+        compute: impl FnOnce() -> Result<Warned<Moving>>,
+    ) -> Result<Arc<Moving>> {
+        let revise = |moving: &mut Arc<Moving>| {
+            if moving.rest.sources != sources {
+                let moving = Arc::make_mut(moving);
+                moving.rest.sources = sources.to_vec();
+                moving.frames.frames.iter_mut().for_each(|f| Arc::make_mut(f).sources = sources.to_vec());
             }
         };
         self.memo_revised(key, revise, compute)

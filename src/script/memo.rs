@@ -11,6 +11,7 @@ use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::geometry::{Mesh, Root, Strands};
+use crate::groom::Moving;
 use crate::head::Head;
 use crate::math::Digest;
 use crate::task::Warning;
@@ -24,6 +25,12 @@ pub trait Kept: Any + Send + Sync {
 impl Kept for Strands {
     fn bytes(&self) -> usize {
         Self::bytes(self)
+    }
+}
+
+impl Kept for Moving {
+    fn bytes(&self) -> usize {
+        self.rest.bytes() + self.frames.frames.iter().map(|f| f.bytes()).sum::<usize>()
     }
 }
 

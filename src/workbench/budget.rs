@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::scene::{Body, Locks, Scene};
+use crate::scene::{Body, Locks, Motion, Part, Scene};
 use crate::tuft::{TuftError, Tufts, reduce};
 
 /// What was done to keep within the triangles.
@@ -20,21 +20,23 @@ pub struct Budget {
     pub tolerance: Option<f32>,
 }
 
-/// Brings all tufts of the scene together within `triangles`; head, caps, buns and rings stay as they are and do not
-/// count.
+/// Brings all tufts of the scene together within `triangles`; head, caps, buns, rings and tufts whose surfaces move stay
+/// as they are and do not count.
 ///
 /// # Errors
 /// Fewer triangles than the coarsest meshes need.
 pub fn keep_within(scene: &mut Scene, triangles: usize) -> Result<Budget, TuftError> {
     let mut all = Tufts::default();
-    for (_, locks) in scene.locks() {
+    let stays = |part: &Part| matches!(part.motion, Some(Motion::Surface(_)));
+    for (_, locks) in scene.locks().filter(|(part, _)| !stays(part)) {
         all.tufts.extend(locks.tufts.tufts.iter().cloned());
     }
     let reduction = reduce(&all, triangles)?;
     if reduction.tolerance.is_some() {
         let mut reduced = reduction.tufts.tufts.into_iter();
         for part in &mut scene.parts {
-            if let Body::Locks(locks) = &mut part.body
+            if !stays(part)
+                && let Body::Locks(locks) = &mut part.body
                 && locks.tufts.count() > 0
             {
                 let tufts = reduced.by_ref().take(locks.tufts.count()).collect();

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::math::Digest;
-use crate::scene::{Body, Scene};
+use crate::scene::{Body, Motion, Scene};
 use crate::script::{Memo, Origin};
 
 /// What a file shows of a scene.
@@ -23,6 +23,7 @@ pub fn scene_key(what: &str, scene: &Scene, shows: Shows, memo: &Memo) -> Digest
     key.bytes(scene.name.as_bytes()).data(&scene.views).data(&scene.look).data(&scene.placement);
     for part in &scene.parts {
         key.bytes(part.name.as_bytes());
+        moves(&mut key, part.motion.as_ref(), memo);
         match &part.body {
             Body::Mesh(mesh, look) => mesh.digest(key.data(look)),
             Body::Locks(locks) => {
@@ -45,6 +46,25 @@ pub fn scene_key(what: &str, scene: &Scene, shows: Shows, memo: &Memo) -> Digest
         }
     }
     key
+}
+
+/// How a part moves.
+fn moves(key: &mut Digest, motion: Option<&Motion>, memo: &Memo) {
+    let Some(motion) = motion else { return };
+    key.data(&motion.count()).data(&motion.rate()).data(&motion.is_loop());
+    match motion {
+        Motion::Rigid(clip) => clip.frames.iter().for_each(|f| {
+            key.floats(&f.to_cols_array());
+        }),
+        Motion::Surface(clip) => clip.frames.iter().for_each(|f| {
+            key.vectors(f);
+        }),
+        Motion::Strands { strands, guides } => {
+            for frame in strands.frames.iter().chain(&guides.frames) {
+                key.key(memo.content(frame));
+            }
+        }
+    }
 }
 
 /// The file with this key, from the memo or made.

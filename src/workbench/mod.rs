@@ -7,6 +7,7 @@ mod budget;
 pub mod diff;
 pub mod draft;
 mod figures;
+mod film;
 mod keep;
 mod new;
 mod output;
@@ -19,6 +20,7 @@ pub mod watch;
 
 pub use budget::{Budget, keep_within};
 pub use figures::{PartFigures, figures};
+pub use film::Films;
 pub use new::{DEFINITIONS, NewError, api, new};
 pub use output::{Output, Unwritten, WriteError, Written, write_all, write_until};
 pub use run::{Report, RunError, RunOptions, Stage, exports, preview, run};

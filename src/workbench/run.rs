@@ -5,10 +5,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::budget::Budget;
+use super::film::{Films, films};
 use super::keep::{Shows, kept, scene_key};
 use super::output::{Output, Unwritten, WriteError, Written, write_until};
 use super::{PartFigures, figures};
-use crate::export::{ExportError, GlbOptions, StrandForm, glb, guides_glb};
+use crate::export::{
+    CyHairOptions, ExportError, Format, GlbOptions, StrandForm, UsdaOptions, cyhair, glb, guides_glb, usda,
+};
 use crate::math::Digest;
 use crate::render::{PngError, RenderError, SheetOptions, Speed, png, sheet};
 use crate::scene::{Background, Scene, View};
@@ -37,6 +40,10 @@ pub struct RunOptions {
     pub tolerance: f32,
     /// A second GLB with the guides.
     pub guides: bool,
+    /// The files for other programs.
+    pub formats: Vec<Format>,
+    /// Strips, animations, turntables.
+    pub films: Films,
     /// Most triangles of all tufts together.
     pub triangles: Option<usize>,
     /// Count the strands that are inside the head.
@@ -128,6 +135,7 @@ pub fn run(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
     finish(options, &mut report, task, |scene, stages| {
         let mut outputs = pictures(options, scene, Speed::Balanced, task, stages)?;
         outputs.extend(models(options, scene, task, stages)?);
+        outputs.extend(films(options, scene, task, stages)?);
         Ok(outputs)
     });
     report
@@ -143,7 +151,11 @@ pub fn preview(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Repo
 /// Writes what [`preview`] has left out; the report's stages and files are those of this half.
 pub fn exports(options: &RunOptions, report: &mut Report, task: &Task) {
     report.stages.clear();
-    finish(options, report, task, |scene, stages| models(options, scene, task, stages));
+    finish(options, report, task, |scene, stages| {
+        let mut outputs = models(options, scene, task, stages)?;
+        outputs.extend(films(options, scene, task, stages)?);
+        Ok(outputs)
+    });
 }
 
 /// A scene with its figures, and nothing written yet.
@@ -169,7 +181,7 @@ pub(super) fn prepare(options: &RunOptions, files: Arc<dyn Files>, task: &Task) 
     }
     report.figures = figures(scene);
     if options.count_inside {
-        timed(&mut report.stages, "count", || super::figures::count_inside(scene, &mut report.figures));
+        timed(&mut report.stages, "count", || super::figures::count_inside(&scene.still(), &mut report.figures));
     }
     report
 }
@@ -236,11 +248,24 @@ fn models(options: &RunOptions, scene: &Scene, task: &Task, stages: &mut Vec<Sta
         key.data(&glb_options);
         key
     };
-    let bytes = found(stages, "glb", || kept(memo, &key("glb 1"), || glb(scene, &glb_options, task)))?;
-    let mut outputs = vec![Output { name: format!("{name}.glb"), bytes }];
+    let mut outputs = vec![];
+    for format in &options.formats {
+        let (ending, what) = (format.ending(), format.text());
+        let make = || match format {
+            Format::Glb => glb(scene, &glb_options, task),
+            Format::Usda => usda(scene, &UsdaOptions { guides: options.guides, ..UsdaOptions::default() }, task),
+            Format::Hair => cyhair(&scene.still(), &CyHairOptions::default(), task),
+        };
+        let bytes = found(stages, what, || {
+            let mut key = key(what);
+            key.data(&options.guides).data(&scene.shown);
+            kept(memo, &key, make)
+        })?;
+        outputs.push(Output { name: format!("{name}.{ending}"), bytes });
+    }
     if options.guides {
-        let make = || guides_glb(scene, &glb_options, task);
-        let bytes = found(stages, "guides", || kept(memo, &key("guides glb 1"), make))?;
+        let make = || guides_glb(&scene.still(), &glb_options, task);
+        let bytes = found(stages, "guides", || kept(memo, &key("guides glb 2"), make))?;
         outputs.push(Output { name: format!("{name}.guides.glb"), bytes });
     }
     Ok(outputs)
@@ -262,7 +287,7 @@ fn picture(
 }
 
 fn shown(scene: &Scene, debug: bool) -> Scene {
-    let mut shown = scene.clone();
+    let mut shown = scene.still();
     shown.look.debug = debug;
     shown
 }
@@ -275,7 +300,7 @@ fn picture_key(options: &RunOptions, drawn: &Scene, debug: bool, speed: Speed) -
 }
 
 /// Times a step that may be found in the memo.
-fn found<T, E>(
+pub(super) fn found<T, E>(
     stages: &mut Vec<Stage>,
     what: &'static str,
     work: impl FnOnce() -> Result<(T, Origin), E>,

@@ -101,7 +101,7 @@ fn cells(
         let (ending, scene) = (outcome.ending, outcome.scene.take());
         runs.push((label.clone(), outcome));
         let scene = match (ending, scene) {
-            (Ending::Done, Some(scene)) if !is_refused => scene,
+            (Ending::Done, Some(scene)) if !is_refused => scene.still(),
             (Ending::Cancelled, _) => return Err(RunError::Cancelled),
             _ => return Err(RunError::Script),
         };
@@ -154,7 +154,8 @@ impl Made<'_> {
         task: &Task,
     ) -> Result<Vec<Cell>, RunError> {
         let scene = self.scene.take().or_else(|| {
-            script::run(&varied(&options.script, self.combination), Arc::clone(files), &task.child()).scene
+            let scene = script::run(&varied(&options.script, self.combination), Arc::clone(files), &task.child()).scene;
+            scene.map(|scene| scene.still())
         });
         // A script that ran once fails the second time only if it is cancelled or its files change.
         let mut scene = scene.ok_or(if task.is_cancelled() { RunError::Cancelled } else { RunError::Script })?;

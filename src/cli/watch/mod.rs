@@ -53,7 +53,8 @@ pub fn watch(arguments: &WatchArguments) -> u8 {
         Err(code) => return code,
     };
     let name = options.script.name();
-    let outputs = ["png", "debug.png", "glb", "guides.glb"].map(|e| options.out.join(format!("{name}.{e}")));
+    let endings = ["png", "debug.png", "strip.png", "anim.png", "turntable.png", "glb", "guides.glb", "usda", "hair"];
+    let outputs = endings.map(|e| options.out.join(format!("{name}.{e}")));
     let watch = Watch::new(WatchOptions { poll: arguments.poll, outputs: outputs.into_iter().collect() });
     let stop = watch.stop();
     let is_stopping = AtomicBool::new(false);

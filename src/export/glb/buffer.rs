@@ -80,8 +80,9 @@ impl Plan {
         let vertex_view = view(vertex_bytes, Some(stride), json::VERTICES);
         let index_view = view(index_bytes, None, json::INDICES);
         let mut accessor = |buffer_view, byte_offset, component_type, normalized, count, shape| {
-            let (min, max) = (None, None);
-            let accessor = Accessor { buffer_view, byte_offset, component_type, normalized, count, shape, min, max };
+            let (min, max, sparse, buffer_view) = (None, None, None, Some(buffer_view));
+            let accessor =
+                Accessor { buffer_view, byte_offset, component_type, normalized, count, shape, min, max, sparse };
             document.accessors.push(accessor);
             document.accessors.len() as u32 - 1
         };
@@ -98,7 +99,7 @@ impl Plan {
         // Until the bounds are known, the longest text that they can have keeps their place.
         let longest = glam::DVec3::splat(-f64::MIN_POSITIVE);
         if let Some(accessor) = attributes.first().and_then(|&(_, i)| document.accessors.get_mut(i as usize)) {
-            (accessor.min, accessor.max) = (Some(longest.to_array()), Some(longest.to_array()));
+            (accessor.min, accessor.max) = (Some(longest.to_array().into()), Some(longest.to_array().into()));
         }
         Slot {
             bytes: start as usize..self.length as usize,
@@ -111,13 +112,18 @@ impl Plan {
 
     /// A place for a file in the file, such as a picture: (its bytes, its buffer view).
     pub fn blob(&mut self, document: &mut Document, length: usize) -> (Range<usize>, u32) {
+        self.aimed(document, length, None)
+    }
+
+    /// The same for what a graphics card is to take in that role (`VERTICES`, `INDICES`).
+    pub fn aimed(&mut self, document: &mut Document, length: usize, target: Option<u32>) -> (Range<usize>, u32) {
         let start = self.length;
         document.buffer_views.push(BufferView {
             buffer: 0,
             byte_offset: start,
             byte_length: length as u64,
             byte_stride: None,
-            target: None,
+            target,
         });
         self.length += (length as u64).next_multiple_of(4);
         (start as usize..start as usize + length, document.buffer_views.len() as u32 - 1)
@@ -134,8 +140,8 @@ impl Slot {
     pub fn set_bounds(&self, document: &mut Document, bounds: Bounds) {
         if let Some((_, index)) = self.attributes.first() {
             let accessor = &mut document.accessors[*index as usize];
-            accessor.min = bounds.min.as_dvec3().to_array().into();
-            accessor.max = bounds.max.as_dvec3().to_array().into();
+            accessor.min = Some(bounds.min.as_dvec3().to_array().into());
+            accessor.max = Some(bounds.max.as_dvec3().to_array().into());
         }
     }
 }

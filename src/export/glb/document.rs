@@ -31,6 +31,8 @@ pub struct Document {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub meshes: Vec<MeshEntry>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub animations: Vec<Animation>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub materials: Vec<Material>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub textures: Vec<Texture>,
@@ -115,12 +117,72 @@ pub struct PartExtras {
     /// No strand is farther than this from what is drawn of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance_cm: Option<f32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionExtras>,
+}
+
+/// How near the animation is to the motion that it was made from.
+#[derive(Serialize, Clone, Debug)]
+pub struct MotionExtras {
+    /// Frames of the motion.
+    pub frames: usize,
+    /// Of these in a second.
+    pub rate: f32,
+    /// True when the first follows the last.
+    pub looped: bool,
+    /// Morph targets.
+    pub shapes: usize,
+    /// Frames that have keys.
+    pub keys: usize,
+    /// No vertex is farther than this from its place at any frame.
+    pub error_cm: f32,
 }
 
 #[derive(Serialize)]
 pub struct MeshEntry {
     pub name: String,
     pub primitives: Vec<Primitive>,
+    /// One for each morph target.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub weights: Vec<f32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extras: Option<MeshExtras>,
+}
+
+/// What Blender and three.js take the names of morph targets from.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct MeshExtras {
+    pub target_names: Vec<String>,
+}
+
+/// One animation: everything that moves, at once.
+#[derive(Serialize)]
+pub struct Animation {
+    pub name: String,
+    pub channels: Vec<Channel>,
+    pub samplers: Vec<AnimationSampler>,
+}
+
+#[derive(Serialize)]
+pub struct Channel {
+    pub sampler: u32,
+    pub target: Target,
+}
+
+#[derive(Serialize)]
+pub struct Target {
+    pub node: u32,
+    /// `translation`, `rotation` or `weights`.
+    pub path: &'static str,
+}
+
+#[derive(Serialize)]
+pub struct AnimationSampler {
+    /// The accessor of the times, seconds.
+    pub input: u32,
+    pub interpolation: &'static str,
+    pub output: u32,
 }
 
 #[derive(Serialize)]
@@ -130,6 +192,18 @@ pub struct Primitive {
     pub indices: u32,
     pub material: u32,
     pub mode: u32,
+    #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "each_in_order")]
+    pub targets: Vec<Vec<(&'static str, u32)>>,
+}
+
+fn each_in_order<S: serde::Serializer>(targets: &[Vec<(&'static str, u32)>], serializer: S) -> Result<S::Ok, S::Error> {
+    struct Target<'a>(&'a [(&'static str, u32)]);
+    impl Serialize for Target<'_> {
+        fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            in_order(self.0, serializer)
+        }
+    }
+    serializer.collect_seq(targets.iter().map(|t| Target(t)))
 }
 
 fn in_order<S: serde::Serializer>(pairs: &[(&'static str, u32)], serializer: S) -> Result<S::Ok, S::Error> {
@@ -218,7 +292,9 @@ pub struct Sampler {
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Accessor {
-    pub buffer_view: u32,
+    /// None for zeros.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub buffer_view: Option<u32>,
     #[serde(skip_serializing_if = "is_zero")]
     pub byte_offset: u64,
     pub component_type: u32,
@@ -229,9 +305,32 @@ pub struct Accessor {
     pub shape: &'static str,
     /// As doubles: the shortest text of a float is another number than the float in the buffer.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub min: Option<[f64; 3]>,
+    pub min: Option<Vec<f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub max: Option<[f64; 3]>,
+    pub max: Option<Vec<f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sparse: Option<Sparse>,
+}
+
+/// Entries that are not zero.
+#[derive(Serialize)]
+pub struct Sparse {
+    pub count: u64,
+    pub indices: SparseIndices,
+    pub values: SparseValues,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct SparseIndices {
+    pub buffer_view: u32,
+    pub component_type: u32,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct SparseValues {
+    pub buffer_view: u32,
 }
 
 #[derive(Serialize)]

@@ -32,6 +32,27 @@ pub fn ribbon(positions: impl ExactSizeIterator<Item = Vec3>, outward: Vec3, out
     face(out, outward);
 }
 
+/// The frames of a strand that has moved, from those at rest: at the root as at rest but for the least turn that the
+/// tangent's makes necessary, and on from there turning no more than they must. They follow a motion smoothly, and `v`
+/// is that at rest.
+pub fn moved(rest: &[Frame], positions: impl Iterator<Item = Vec3>, out: &mut Vec<Frame>) {
+    out.clear();
+    out.extend(positions.zip(rest).map(|(position, rest)| Frame { position, ..*rest }));
+    let Some(first) = rest.first() else { return };
+    tangents(out, first.tangent);
+    if let Some(now) = out.first_mut() {
+        let turned = glam::Quat::from_rotation_arc(first.tangent, now.tangent) * first.normal;
+        now.normal = frames::perpendicular(turned, now.tangent);
+    }
+    for i in 1..out.len() {
+        let (a, b) = (out[i - 1], out[i]);
+        out[i].normal = frames::transport(a.normal, a.position, a.tangent, b.position, b.tangent);
+    }
+    for (now, rest) in out.iter_mut().zip(rest) {
+        now.v = rest.v;
+    }
+}
+
 /// Fills tangents (the bisector of the two segments at a node) and `v`.
 fn tangents(frames: &mut [Frame], outward: Vec3) {
     let count = frames.len();

@@ -6,14 +6,20 @@
 //! (`_STRAND_ID`), its guide (`_GUIDE_ID`), where strands of several script lines are in one part also the line
 //! (`_SOURCE`, an index into the node's `extras.coif.sources`), and has the strand's diameter in metres (`_WIDTH`).
 //!
+//! A scene that moves has one animation. What moves as a whole is an animated node; every other motion is a mixture of
+//! morph targets, as seen from the node that carries it. `extras.coif.motion` of a part says how near it comes.
+//!
 //! Stylised hair is one mesh with one material: uv in an atlas (`v` from root to tip), tangents along `u`, the tuft's
 //! colour as vertex colour, `_TUFT_ID`, and `_SOURCE` where several script lines made tufts.
 
+mod basis;
 mod buffer;
 mod document;
 mod frames;
+mod keys;
 mod locks;
 mod material;
+mod motion;
 mod shapes;
 
 use std::borrow::Cow;
@@ -22,9 +28,10 @@ use glam::Affine3A;
 
 use self::buffer::{Pen, Plan, Slot};
 use self::document::{Buffer, Document, Extras, MeshEntry, Node, PartExtras, Primitive, SceneNodes};
+use self::motion::Film;
 use self::shapes::{Drawn, METRES};
 use super::reduce::reduce;
-use super::{ExportError, check_hair, check_tolerance, with_normals};
+use super::{ExportError, check_hair, check_motion, check_tolerance, with_normals};
 use crate::geometry::{Mesh, Strands};
 use crate::scene::{Body, HairMaterial, Locks, Part, Scene};
 use crate::task::Task;
@@ -49,6 +56,10 @@ crate::params! {
         strands: StrandForm = StrandForm::Ribbons;
         /// No point of a strand is farther than this from what is drawn of it; 0 keeps every bend.
         tolerance: f32 = 0.1, unit("cm"), range(0.0, 10.0);
+        /// How a scene that moves is written: with its animation, or at the frame of its still pictures.
+        animation: bool = true;
+        /// At no frame is a vertex of the animation farther than this from its place.
+        motion_tolerance: f32 = 0.05, unit("cm"), range(0.0, 10.0);
         /// A larger file is refused; the format itself ends at 4294967295.
         max_bytes: u64 = u64::from(u32::MAX), unit("bytes"), range(0.0, 4294967295.0);
     }
@@ -56,7 +67,7 @@ crate::params! {
 
 impl Default for GlbOptions {
     fn default() -> Self {
-        Self { strands: StrandForm::Ribbons, tolerance: 0.1, max_bytes: u64::from(u32::MAX) }
+        crate::params::read::<Self>(&crate::params::Table::default()).expect("every field has a default")
     }
 }
 
@@ -66,8 +77,14 @@ impl Default for GlbOptions {
 /// [`ExportError`]: too large, not finite, indices out of range, a placement that is not rigid, cancelled.
 pub fn glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Vec<u8>, ExportError> {
     check_tolerance(options.tolerance)?;
+    check_tolerance(options.motion_tolerance)?;
+    if !options.animation && scene.timeline().is_some() {
+        return glb(&scene.still(), options, task);
+    }
     let mut file = File::new(scene)?;
+    file.begin(scene, options.motion_tolerance);
     for part in &scene.parts {
+        check_motion(part)?;
         match &part.body {
             Body::Mesh(mesh, look) => {
                 mesh.validate().map_err(|error| ExportError::Mesh { part: part.name.clone(), error })?;
@@ -76,7 +93,8 @@ pub fn glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Vec<u8>, 
                 let slot = file.plan.primitive(&mut file.document, &attributes, vertices, indices);
                 let material = material::surface(&mut file.document, &part.name, look);
                 let extras = PartExtras { kind: "head", source: part.source.clone(), ..PartExtras::default() };
-                file.part(&part.name, Some((&slot, material, document::TRIANGLES)), extras);
+                let place = file.part(part, Some((&slot, material, document::TRIANGLES)), extras);
+                file.surface(part, place, &mesh, task)?;
                 file.jobs.push(Job::Surface(mesh, slot));
             }
             Body::Locks(locks) => {
@@ -92,7 +110,8 @@ pub fn glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Vec<u8>, 
                     sources: locks.tufts.sources.iter().map(|s| s.as_ref().to_owned()).collect(),
                     ..PartExtras::default()
                 };
-                file.part(&part.name, Some((&slot, material, document::TRIANGLES)), extras);
+                let place = file.part(part, Some((&slot, material, document::TRIANGLES)), extras);
+                file.surface(part, place, &locks.mesh.mesh, task)?;
                 file.jobs.push(Job::Locks(locks, slot));
             }
             Body::Hair(hair) => {
@@ -109,7 +128,7 @@ pub fn glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Vec<u8>, 
 /// The guides of every part that is hair, as lines with all their nodes, and nothing else.
 ///
 /// The nodes are those of [`glb`] with ` guides` after their names; of `options` only `max_bytes` counts. The strand
-/// with `_GUIDE_ID` n in the one file is the line with `_STRAND_ID` n in the other.
+/// with `_GUIDE_ID` n in the one file is the line with `_STRAND_ID` n in the other. What moves is written at rest.
 ///
 /// # Errors
 /// [`ExportError`]: as for [`glb`].
@@ -117,7 +136,7 @@ pub fn guides_glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Ve
     let mut file = File::new(scene)?;
     for (part, hair) in scene.hair() {
         check_hair(part, hair)?;
-        let named = Part { name: format!("{} guides", part.name), ..part.clone() };
+        let named = Part { name: format!("{} guides", part.name), motion: None, ..part.clone() };
         file.strands(&named, &hair.guides, &hair.material, (StrandForm::Lines, 0.0), task, |e| e.kind = "guides")?;
     }
     file.finish(options.max_bytes, task)
@@ -137,6 +156,15 @@ struct File<'a> {
     document: Document,
     plan: Plan,
     jobs: Vec<Job<'a>>,
+    film: Option<Film>,
+}
+
+/// Where a part is in the document.
+#[derive(Clone, Copy)]
+struct Place {
+    node: u32,
+    parent: u32,
+    mesh: Option<u32>,
 }
 
 impl<'a> File<'a> {
@@ -147,20 +175,26 @@ impl<'a> File<'a> {
         place(&mut root, scene.placement)?;
         document.nodes.push(root);
         document.scenes.push(SceneNodes { name: scene.name.clone(), nodes: vec![0] });
-        Ok(Self { document, plan: Plan::default(), jobs: Vec::new() })
+        Ok(Self { document, plan: Plan::default(), jobs: Vec::new(), film: None })
     }
 
-    /// Adds a node below the root, with a mesh of one primitive: (place, material, mode).
-    fn part(&mut self, name: &str, primitive: Option<(&Slot, u32, u32)>, extras: PartExtras) {
+    /// Adds a node below the one that carries the part, with a mesh of one primitive: (place, material, mode). Gives the
+    /// indices of the node and its mesh.
+    fn part(&mut self, part: &Part, primitive: Option<(&Slot, u32, u32)>, extras: PartExtras) -> Place {
+        let name = &part.name;
         let mesh = primitive.map(|(slot, material, mode)| {
-            let primitive = Primitive { attributes: slot.attributes.clone(), indices: slot.indices, material, mode };
-            self.document.meshes.push(MeshEntry { name: name.to_owned(), primitives: vec![primitive] });
+            let (attributes, targets) = (slot.attributes.clone(), vec![]);
+            let primitive = Primitive { attributes, indices: slot.indices, material, mode, targets };
+            let (primitives, weights, extras) = (vec![primitive], vec![], None);
+            self.document.meshes.push(MeshEntry { name: name.clone(), primitives, weights, extras });
             self.document.meshes.len() as u32 - 1
         });
-        let node = Node { name: name.to_owned(), mesh, extras: Some(Extras { coif: extras }), ..Node::default() };
+        let node = Node { name: name.clone(), mesh, extras: Some(Extras { coif: extras }), ..Node::default() };
         let index = self.document.nodes.len() as u32;
         self.document.nodes.push(node);
-        self.document.nodes[0].children.push(index);
+        let parent = self.parent(part);
+        self.document.nodes[parent as usize].children.push(index);
+        Place { node: index, parent, mesh }
     }
 
     fn strands(
@@ -186,7 +220,7 @@ impl<'a> File<'a> {
         };
         more(&mut extras);
         if strands.count() == 0 {
-            self.part(&part.name, None, extras);
+            self.part(part, None, extras);
             return Ok(());
         }
         task.progress("reducing strands", 0.0);
@@ -198,14 +232,16 @@ impl<'a> File<'a> {
             let ramp = material::ramp_png(look);
             let (range, view) = self.plan.blob(document, ramp.len());
             let material = material::ribbons(document, &part.name, look, view);
-            self.part(&part.name, Some((&slot, material, document::TRIANGLES)), extras);
+            let place = self.part(part, Some((&slot, material, document::TRIANGLES)), extras);
+            self.hair(part, place, &drawn, true, task)?;
             self.jobs.push(Job::Blob(ramp, range));
             self.jobs.push(Job::Ribbons(drawn, slot));
         } else {
             let (attributes, vertices, indices) = drawn.line_layout();
             let slot = self.plan.primitive(document, &attributes, vertices, indices);
             let material = material::lines(document, &part.name, look);
-            self.part(&part.name, Some((&slot, material, document::LINES)), extras);
+            let place = self.part(part, Some((&slot, material, document::LINES)), extras);
+            self.hair(part, place, &drawn, false, task)?;
             self.jobs.push(Job::Lines(drawn, slot));
         }
         Ok(())
@@ -216,6 +252,7 @@ impl<'a> File<'a> {
     /// The JSON comes first, but has the bounds of what comes after it. It gets a place that is surely large enough and
     /// is padded with spaces, so that the buffer is written where it stays: a copy would take as long as the rest.
     fn finish(mut self, max_bytes: u64, task: &Task) -> Result<Vec<u8>, ExportError> {
+        self.end();
         let byte_length = self.plan.length();
         if byte_length > 0 {
             self.document.buffers.push(Buffer { byte_length });

@@ -1,11 +1,12 @@
 //! Filling the buffer: surfaces, ribbons, lines.
 
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
 
+use super::basis::Vertices;
 use super::buffer::{Attribute, Pen, Slot};
 use super::document as json;
-use super::frames::{Frame, ribbon};
+use super::frames::{Frame, moved, ribbon};
 use crate::export::appearance;
 use crate::export::reduce::Block;
 use crate::geometry::{Bounds, Mesh, Strands};
@@ -137,6 +138,45 @@ impl Drawn<'_> {
             }
             bounds
         })
+    }
+
+    /// All vertices of ribbons, or of lines, in the order of the file: at rest, or where the strands of a frame, moved by
+    /// a transform, have them.
+    pub fn vertices(&self, is_ribbons: bool, at: Option<(&Strands, &Affine3A)>) -> Vertices {
+        let point = |n: u32| match at {
+            Some((strands, by)) => by.transform_point3(strands.points[n as usize]),
+            None => self.strands.points[n as usize],
+        };
+        let blocks: Vec<Vertices> = self
+            .blocks
+            .par_iter()
+            .map(|block| {
+                let (mut rest, mut now, mut out) = (Vec::new(), Vec::new(), Vertices::default());
+                for (strand, nodes) in block.strands() {
+                    if !is_ribbons {
+                        out.positions.extend(nodes.iter().map(|&n| point(n)));
+                        continue;
+                    }
+                    let still = nodes.iter().map(|&n| self.strands.points[n as usize]);
+                    ribbon(still, self.strands.roots[strand].normal, &mut rest);
+                    if at.is_some() {
+                        moved(&rest, nodes.iter().map(|&n| point(n)), &mut now);
+                    }
+                    for f in if at.is_some() { &now } else { &rest } {
+                        let side = f.tangent.cross(f.normal) * (0.5 * appearance::width(self.look, f.v));
+                        out.positions.extend([f.position - side, f.position + side]);
+                        out.normals.extend([f.normal; 2]);
+                    }
+                }
+                out
+            })
+            .collect();
+        let mut all = Vertices::default();
+        for block in blocks {
+            all.positions.extend(block.positions);
+            all.normals.extend(block.normals);
+        }
+        all
     }
 
     fn write_identity(&self, strand: usize, vertices: &mut Pen) {

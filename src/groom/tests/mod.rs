@@ -2,6 +2,7 @@
 
 mod fill;
 mod grow;
+mod moving;
 mod natural;
 mod queue;
 

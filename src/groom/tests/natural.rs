@@ -6,7 +6,7 @@ use crate::params::Angle;
 use crate::task::Task;
 use std::f32::consts::TAU;
 
-fn curl(r#box: OrientedBox) -> Curl {
+pub fn curl(r#box: OrientedBox) -> Curl {
     Curl {
         r#box,
         period: 6.0,

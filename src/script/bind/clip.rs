@@ -11,10 +11,12 @@ use super::super::call::{Call, Result};
 use super::super::registry::{Entry, Getter, Noun};
 use super::head::give;
 use super::piece::Piece;
-use super::strands::Lock;
+use super::strands::{FillExtras, Lock, MaterialFields, fill_clip_strands, material_clip, natural_clip};
 use super::tuft::Wig;
 use crate::geometry::{Bounds, Clip, Strands};
-use crate::head::{Head, HeadMotion, MotionOptions};
+use crate::groom::{DeformOptions, FillOptions, pass_through};
+use crate::head::{Ease, Head, HeadMotion, MOST_FRAMES, MotionOptions};
+use crate::math::Digest;
 use crate::params::{Handle, Object, Table, Value};
 use crate::scene::Locks;
 
@@ -38,9 +40,14 @@ impl Object for MovingStrands {
 }
 
 impl MovingStrands {
-    /// Guides, or strands that follow none, in motion.
+    /// Strands in motion; when they are guides at rest, they are so in motion, else their guides stay at rest.
     pub fn new(rest: Lock, strands: Clip<Strands>, motion: Option<Arc<HeadMotion>>, key: u128) -> Self {
-        Self { rest, guides: strands.clone(), strands, motion, key }
+        let guides = if Arc::ptr_eq(&rest.strands, &rest.guides) {
+            strands.clone()
+        } else {
+            Clip { frames: vec![Arc::clone(&rest.guides); strands.count()], ..strands.clone() }
+        };
+        Self { rest, strands, guides, motion, key }
     }
 }
 
@@ -106,6 +113,30 @@ crate::params! {
     }
 }
 
+crate::params! {
+    /// Strands on their way through poses: the same strands, styled in different ways. Strands bend from pose to pose and
+    /// keep their length.
+    pub struct ClipFields("coif.clip") {
+        /// The poses, two or more: strands of the same roots with the same numbers of nodes. The first is the rest.
+        poses: Vec<Arc<Lock>>, positional();
+        /// Time from each pose to the next.
+        seconds: f32 = 1.0, unit("s"), range(0.01, 3600.0);
+        /// Frames in a second.
+        rate: f32 = 24.0, unit("1/s"), range(1.0, 240.0);
+        /// How each pose is left and come to.
+        ease: Ease = Ease::Smooth;
+        /// True to go back from the last pose to the first, over and over.
+        r#loop: bool = false;
+        /// Least distance of hair from the skin.
+        margin: f32 = 0.05, unit("cm"), range(0.005, 10.0);
+    }
+}
+
+/// `coif.clip`.
+pub fn functions() -> Vec<Entry> {
+    vec![Entry::table::<ClipFields>("coif.clip", "StrandsClip", clip)]
+}
+
 /// `Head:motion`, which stands with the head's other methods.
 pub fn head_methods() -> Vec<Entry> {
     vec![Entry::table::<MotionOptions>("Head:motion", "Motion", motion)]
@@ -147,6 +178,15 @@ macro_rules! time {
 pub fn nouns() -> Vec<Noun> {
     let methods = vec![
         Entry::positional::<FrameFields>("StrandsClip:frame", "Strands", frame),
+        Entry::table::<DeformOptions>("StrandsClip:natural", "StrandsClip", natural_clip).about(
+            "Lays waves and curls over strands in motion, as `Strands:natural` over strands. Each domain acts at every \
+             frame on the part of a strand that is inside its box at rest.",
+        ),
+        Entry::both::<FillOptions, FillExtras>("StrandsClip:fill", "StrandsClip", fill_clip_strands).about(
+            "Fills the scalp with strands between guides in motion, as `Strands:fill` between guides. A strand follows \
+             the same guides by the same parts at every frame.",
+        ),
+        Entry::positional::<MaterialFields>("StrandsClip:material", "StrandsClip", material_clip),
         Entry::plain(
             "StrandsClip:stats",
             "Figures: `frames`, `seconds`, `strands`, `points`, `guides`, `travel` (cm, the farthest that a node comes \
@@ -186,6 +226,66 @@ pub fn nouns() -> Vec<Noun> {
 /// The number that a person would write.
 fn number(n: f32) -> Value {
     Value::Number(n.to_string().parse().unwrap_or_else(|_| f64::from(n)))
+}
+
+fn clip(call: &Call) -> Result<Value> {
+    let fields: ClipFields = call.read()?;
+    let [rest, others @ ..] = fields.poses.as_slice() else {
+        return Err(
+            call.problem("a clip without poses", Some("as in `coif.clip { still, blown, loop = true }`".into()))
+        );
+    };
+    if others.is_empty() {
+        let hint = "give at least two, as in `coif.clip { still, blown, loop = true }`".to_owned();
+        return Err(call.problem("a clip of one pose does not move", Some(hint)));
+    }
+    for (i, pose) in others.iter().enumerate() {
+        let path = format!("[{}]", i + 2);
+        if !Arc::ptr_eq(&pose.area.head, &rest.area.head) {
+            let hint = "make all of them from one head: `local head = coif.head()`".to_owned();
+            return Err(call.problem_at(&path, "this pose is of another head", Some(hint)));
+        }
+        if pose.strands.offsets != rest.strands.offsets {
+            let (a, b) = (&rest.strands, &pose.strands);
+            let message = format!(
+                "the first pose has {} strands of {} nodes in all, this one {} of {}",
+                a.count(),
+                a.points.len(),
+                b.count(),
+                b.points.len()
+            );
+            let hint = "style the same guides in different ways, with the same `length` and `step`".to_owned();
+            return Err(call.problem_at(&path, message, Some(hint)));
+        }
+    }
+    let poses: Vec<Arc<Strands>> = fields.poses.iter().map(|p| Arc::clone(&p.strands)).collect();
+    let legs = if fields.r#loop { poses.len() } else { others.len() };
+    let steps = legs as f32 * fields.seconds * fields.rate;
+    let count = if fields.r#loop { steps.round() as usize } else { (steps + 1e-3).floor() as usize + 1 };
+    if !(2..=MOST_FRAMES).contains(&count) {
+        let hint = format!("a clip has 2 to {MOST_FRAMES} frames: change `seconds` or `rate`");
+        return Err(call.problem_at("seconds", format!("that makes `{count}` frames"), Some(hint)));
+    }
+    let way = |i: usize| {
+        let at = if fields.r#loop {
+            legs as f32 * i as f32 / count as f32
+        } else {
+            i as f32 / (fields.seconds * fields.rate)
+        };
+        let leg = (at as usize).min(legs - 1);
+        (leg, (leg + 1) % poses.len(), fields.ease.at((at - leg as f32).clamp(0.0, 1.0)))
+    };
+    let ways: Vec<(usize, usize, f32)> = (0..count).map(way).collect();
+    let mut key = Digest::new("clip 1");
+    key.key(rest.area.head.key()).data(&ways).floats(&[fields.rate, fields.margin]);
+    for pose in &poses {
+        key.key(call.session.options.memo.content(pose));
+    }
+    let solid = Some((&*rest.area.head.solid, fields.margin));
+    let frames = pass_through(&poses, &ways, solid, call.task()).map_err(|e| call.groom(&e))?;
+    let clip = Clip { rate: fields.rate, looped: fields.r#loop, frames };
+    let rest = Lock { source: call.source(), ..Lock::clone(rest) };
+    Ok(give(MovingStrands::new(rest, clip, None, key.finish())))
 }
 
 fn motion(call: &Call) -> Result<Value> {

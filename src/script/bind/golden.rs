@@ -1,5 +1,7 @@
 //! Golden previews: a test's picture against the one that was kept.
 
+use std::sync::Arc;
+
 use glam::Mat3;
 
 use super::super::Preview;
@@ -35,6 +37,8 @@ crate::params! {
         tolerance: u32 = 1, range(0.0, 255.0);
         /// The colour behind everything, instead of the scene's own.
         background: Option<Background>;
+        /// Of a scene that moves, which frame, from 1; the scene's own when left out.
+        frame: Option<usize>, range(1.0, 1e9);
     }
 }
 
@@ -54,6 +58,10 @@ pub fn preview(call: &Call) -> Result<Value> {
     let options = match fields.options {
         Some(options) => options,
         None => crate::params::read(&crate::params::Table::default()).map_err(|p| call.problems(p))?,
+    };
+    let scene = match options.frame {
+        Some(frame) => Arc::new(scene.at(frame - 1)),
+        None => scene,
     };
     let actual = draw(call, &scene, &options)?;
     let golden = call.session.options.folder().join("golden").join(format!("{name}.png"));

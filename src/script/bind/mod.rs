@@ -42,6 +42,7 @@ pub fn registry() -> Registry {
         tuft::functions(),
         piece::functions(),
         material::functions(),
+        clip::functions(),
         scene::functions(),
     ];
     let nouns = [

@@ -5,12 +5,14 @@ use std::sync::Arc;
 use super::super::call::{Call, Result};
 use super::super::limits::Need;
 use super::super::registry::{Entry, Getter, Noun};
+use super::clip::MovingStrands;
 use super::head::give;
 use super::overlay;
 use super::region::Area;
-use crate::geometry::{Root, Strands};
+use crate::geometry::{Clip, Root, Strands};
 use crate::groom::{
-    Deform, DeformOptions, Fill, FillOptions, NaturalQueue, count_inside, deform, deformed_points, fill, member_nodes,
+    Deform, DeformOptions, Fill, FillOptions, NaturalQueue, count_inside, deform, deform_clip, deformed_points, fill,
+    fill_clip, member_nodes,
 };
 use crate::head::MOST_ROOTS;
 use crate::math::Digest;
@@ -108,102 +110,230 @@ pub fn noun() -> Noun {
     })
 }
 
+/// What `natural` was called with, besides the strands.
+struct Naturals {
+    queue: NaturalQueue,
+    which: Vec<bool>,
+    margin: f32,
+    seed: u64,
+}
+
+impl Naturals {
+    fn read(call: &Call, lock: &Lock) -> Result<Self> {
+        let options: DeformOptions = call.read()?;
+        let queue = NaturalQueue::new(options.domains).map_err(|e| call.groom(&e))?;
+        let which = match options.r#where {
+            Some(test) => call.choose(test, "where", &lock.strands.roots)?,
+            None => vec![],
+        };
+        Ok(Self { queue, which, margin: options.margin, seed: call.seed(options.seed) })
+    }
+
+    fn input<'a>(&'a self, lock: &'a Lock) -> Deform<'a> {
+        Deform {
+            strands: &lock.strands,
+            queue: &self.queue,
+            which: &self.which,
+            solid: Some(&lock.area.head.solid),
+            margin: self.margin,
+            seed: self.seed,
+        }
+    }
+
+    fn digest(&self, lock: &Lock, into: &mut Digest) {
+        into.key(lock.area.head.key()).data(&self.queue.domains()).flags(&self.which).floats(&[self.margin]);
+        into.number(self.seed);
+    }
+
+    /// The lock with other strands. Deformed guides are guides still; deformed members keep theirs.
+    fn lock(&self, lock: &Lock, strands: Arc<Strands>) -> Lock {
+        let mut overlay = Overlay::clone(&lock.overlay);
+        overlay.extend(&overlay::naturals(self.queue.domains()));
+        let is_guide = Arc::ptr_eq(&lock.strands, &lock.guides);
+        let guides = if is_guide { Arc::clone(&strands) } else { Arc::clone(&lock.guides) };
+        Lock { strands, guides, overlay: Arc::new(overlay), ..lock.clone() }
+    }
+}
+
 fn natural(call: &Call) -> Result<Value> {
-    let (this, options) = (call.this::<Lock>()?, call.read::<DeformOptions>()?);
-    let queue = NaturalQueue::new(options.domains).map_err(|e| call.groom(&e))?;
-    let which = match options.r#where {
-        Some(test) => call.choose(test, "where", &this.strands.roots)?,
-        None => vec![],
-    };
-    let input = Deform {
-        strands: &this.strands,
-        queue: &queue,
-        which: &which,
-        solid: Some(&this.area.head.solid),
-        margin: options.margin,
-        seed: call.seed(options.seed),
-    };
+    let this = call.this::<Lock>()?;
+    let naturals = Naturals::read(call, &this)?;
     let mut key = Digest::new("natural 1");
-    key.key(this.area.head.key()).key(call.session.options.memo.content(&this.strands));
-    key.data(&queue.domains()).flags(&which).floats(&[options.margin]).number(input.seed);
+    key.key(call.session.options.memo.content(&this.strands));
+    naturals.digest(&this, &mut key);
+    let input = naturals.input(&this);
     let points = match call.session.options.memo.get::<Strands>(key.finish()) {
         Some((known, _)) => known.points.len(),
         None => deformed_points(&input, call.task()).map_err(|e| call.groom(&e))?,
     };
     call.claim("", Need { points: points as u64, ..Need::strands(this.strands.count(), 0) })?;
-    let sources = &this.strands.sources;
-    let strands = call.memo_strands(&key, sources, || deform(&input, call.task()).map_err(|e| call.groom(&e)))?;
-    let mut overlay = Overlay::clone(&this.overlay);
-    overlay.extend(&overlay::naturals(queue.domains()));
-    // Deformed guides are guides still; deformed members keep theirs.
-    let is_guide = Arc::ptr_eq(&this.strands, &this.guides);
-    let guides = if is_guide { Arc::clone(&strands) } else { Arc::clone(&this.guides) };
-    Ok(give(Lock { strands, guides, overlay: Arc::new(overlay), ..Lock::clone(&this) }))
+    let make = || deform(&input, call.task()).map_err(|e| call.groom(&e));
+    let strands = call.memo_strands(&key, &this.strands.sources, make)?;
+    Ok(give(naturals.lock(&this, strands)))
+}
+
+/// `StrandsClip:natural`.
+pub fn natural_clip(call: &Call) -> Result<Value> {
+    let this = call.this::<MovingStrands>()?;
+    let naturals = Naturals::read(call, &this.rest)?;
+    let mut key = Digest::new("natural clip 1");
+    key.key(this.key);
+    naturals.digest(&this.rest, &mut key);
+    let input = naturals.input(&this.rest);
+    let head = this.motion.as_ref().map(|m| &m.clip);
+    let points = deformed_points(&input, call.task()).map_err(|e| call.groom(&e))?;
+    call.claim(
+        "",
+        frames(Need { points: points as u64, ..Need::strands(this.rest.strands.count(), 0) }, &this.strands),
+    )?;
+    let make = || deform_clip(&input, &this.strands, head, call.task()).map_err(|e| call.groom(&e));
+    let moving = call.memo_moving(&key, &this.rest.strands.sources, make)?;
+    let is_guide = Arc::ptr_eq(&this.rest.strands, &this.rest.guides);
+    let rest = naturals.lock(&this.rest, Arc::new(moving.rest.clone()));
+    let strands = moving.frames.clone();
+    let guides = if is_guide { strands.clone() } else { this.guides.clone() };
+    Ok(give(MovingStrands { rest, strands, guides, motion: this.motion.clone(), key: key.finish() }))
+}
+
+/// What `fill` was called with, besides the guides.
+struct Filling {
+    options: FillOptions,
+    material: Option<Look>,
+    area: Area,
+    /// All of them.
+    roots: Arc<Vec<Root>>,
+    /// How many of these grow, fewer for a draft: the first of their order are a sparser fill of the same region.
+    few: usize,
+    source: Arc<str>,
+}
+
+impl Filling {
+    /// `times` is how often every strand is there: once, or in every frame.
+    fn read(call: &Call, lock: &Lock, times: impl Fn(Need) -> Need) -> Result<Self> {
+        let (mut options, extras) = call.read_both::<FillOptions, FillExtras>()?;
+        options.seed = call.seed(options.seed);
+        let area = match &extras.region {
+            Some(area) if !Arc::ptr_eq(&area.head, &lock.area.head) => {
+                let hint = "make both from one head, and make that once: `local head = coif.head()`".to_owned();
+                return Err(call.problem_at("region", "the region is of another head", Some(hint)));
+            }
+            Some(area) => Area::clone(area),
+            None => lock.area.clone(),
+        };
+        let draft = call.session.options.draft;
+        let few = |count: usize| draft.map_or(count, |most| count.min(most.max(1)));
+        let nodes = member_nodes(&lock.strands, &options);
+        // What is refused whatever the limits has words of its own.
+        if extras.density.is_none() && options.strands <= MOST_ROOTS {
+            call.claim("strands", times(Need::strands(few(options.strands), nodes)))?;
+        }
+        let roots = area.roots(call, ("strands", options.strands), extras.density, options.seed)?;
+        let few = few(roots.len());
+        if extras.density.is_some() {
+            call.claim("density", times(Need::strands(few, nodes)))?;
+        }
+        Ok(Self { options, material: extras.material, area, roots, few, source: call.source() })
+    }
+
+    /// Calls `make` with what the core takes.
+    fn with<R>(&self, lock: &Lock, make: impl FnOnce(&Fill) -> R) -> R {
+        let partings = &lock.area.partings;
+        let separated = |a, b| partings.iter().any(|p| p.separates(a, b));
+        make(&Fill {
+            guides: &lock.strands,
+            roots: &self.roots[..self.few],
+            options: &self.options,
+            separated: (!partings.is_empty()).then_some(&separated),
+            solid: Some(&self.area.head.solid),
+            source: &self.source,
+        })
+    }
+
+    /// The key for so many of the roots.
+    fn key(&self, mut key: Digest, count: usize, lock: &Lock) -> Digest {
+        let roots = &self.roots[..count];
+        key.key(self.area.head.key()).data(&self.options).packed(roots, Root::bytes).data(&lock.area.partings);
+        key
+    }
+
+    /// Notes that a draft grows fewer strands; `is_known` says that all of them are there already.
+    fn thin(&self, call: &Call, is_known: bool) {
+        if call.session.options.draft.is_some() {
+            let mut thinned = call.session.thinned.get();
+            thinned.members += self.few;
+            thinned.of += self.roots.len();
+            thinned.pending += if is_known { 0 } else { self.roots.len() };
+            call.session.thinned.set(thinned);
+        }
+    }
+
+    /// The filled lock.
+    fn lock(&self, lock: &Lock, strands: Arc<Strands>) -> Lock {
+        Lock {
+            strands,
+            guides: Arc::clone(&lock.strands),
+            area: lock.area.clone(),
+            material: self.material.as_ref().map_or_else(|| lock.material.clone(), |look| look.0.clone()),
+            overlay: Arc::clone(&lock.overlay),
+            source: Arc::clone(&self.source),
+            stands_for: self.roots.len() as f32 / self.few.max(1) as f32,
+        }
+    }
 }
 
 fn fill_strands(call: &Call) -> Result<Value> {
     let this = call.this::<Lock>()?;
-    let (mut options, extras) = call.read_both::<FillOptions, FillExtras>()?;
-    options.seed = call.seed(options.seed);
-    let area = match &extras.region {
-        Some(area) if !Arc::ptr_eq(&area.head, &this.area.head) => {
-            let hint = "make both from one head, and make that once: `local head = coif.head()`".to_owned();
-            return Err(call.problem_at("region", "the region is of another head", Some(hint)));
-        }
-        Some(area) => area,
-        None => &this.area,
-    };
-    let head = &area.head;
-    // The first roots of the order are a sparser fill of the same region.
-    let draft = call.session.options.draft;
-    let few = |count: usize| draft.map_or(count, |most| count.min(most.max(1)));
-    let nodes = member_nodes(&this.strands, &options);
-    // What is refused whatever the limits has words of its own.
-    if extras.density.is_none() && options.strands <= MOST_ROOTS {
-        call.claim("strands", Need::strands(few(options.strands), nodes))?;
-    }
-    let roots = area.roots(call, ("strands", options.strands), extras.density, options.seed)?;
-    let few = few(roots.len());
-    if extras.density.is_some() {
-        call.claim("density", Need::strands(few, nodes))?;
-    }
-    let partings = &this.area.partings;
-    let separated = |a, b| partings.iter().any(|p| p.separates(a, b));
-    let source = call.source();
+    let filling = Filling::read(call, &this, |need| need)?;
     let memo = &call.session.options.memo;
-    let key = |roots: &[Root]| {
+    let key = |count| {
         let mut key = Digest::new("fill 1");
-        key.key(head.key()).key(memo.content(&this.strands));
-        key.data(&options).packed(roots, Root::bytes).data(partings);
-        key
+        key.key(memo.content(&this.strands));
+        filling.key(key, count, &this)
     };
-    if draft.is_some() {
-        let mut thinned = call.session.thinned.get();
-        thinned.members += few;
-        thinned.of += roots.len();
-        thinned.pending += if memo.has(key(&roots).finish()) { 0 } else { roots.len() };
-        call.session.thinned.set(thinned);
+    filling.thin(call, memo.has(key(filling.roots.len()).finish()));
+    let key = key(filling.few);
+    let made = || filling.with(&this, |input| fill(input, call.task()).map_err(|e| call.groom(&e)));
+    let strands = call.memo_strands(&key, &[Arc::clone(&filling.source)], made)?;
+    Ok(give(filling.lock(&this, strands)))
+}
+
+/// `StrandsClip:fill`.
+pub fn fill_clip_strands(call: &Call) -> Result<Value> {
+    let this = call.this::<MovingStrands>()?;
+    let filling = Filling::read(call, &this.rest, |need| frames(need, &this.strands))?;
+    let key = |count| {
+        let mut key = Digest::new("fill clip 1");
+        key.key(this.key);
+        filling.key(key, count, &this.rest)
+    };
+    filling.thin(call, call.session.options.memo.has(key(filling.roots.len()).finish()));
+    let key = key(filling.few);
+    let head = this.motion.as_ref().map(|m| &m.clip);
+    let made = || {
+        let make = |input: &Fill| fill_clip(input, &this.strands, head, call.task()).map_err(|e| call.groom(&e));
+        filling.with(&this.rest, make)
+    };
+    let moving = call.memo_moving(&key, &[Arc::clone(&filling.source)], made)?;
+    let rest = filling.lock(&this.rest, Arc::new(moving.rest.clone()));
+    let (strands, guides) = (moving.frames.clone(), this.strands.clone());
+    Ok(give(MovingStrands { rest, strands, guides, motion: this.motion.clone(), key: key.finish() }))
+}
+
+/// `StrandsClip:material`.
+pub fn material_clip(call: &Call) -> Result<Value> {
+    let (this, fields) = (call.this::<MovingStrands>()?, call.read::<MaterialFields>()?);
+    let rest = Lock { material: fields.material.0, ..this.rest.clone() };
+    Ok(give(MovingStrands { rest, ..MovingStrands::clone(&this) }))
+}
+
+/// What something takes in every frame of a clip, and at rest.
+fn frames(once: Need, clip: &Clip<Strands>) -> Need {
+    let count = clip.count() as u64 + 1;
+    Need {
+        strands: once.strands.saturating_mul(count),
+        points: once.points.saturating_mul(count),
+        triangles: once.triangles,
     }
-    let input = Fill {
-        guides: &this.strands,
-        roots: &roots[..few],
-        options: &options,
-        separated: (!partings.is_empty()).then_some(&separated),
-        solid: Some(&head.solid),
-        source: &source,
-    };
-    let made = || fill(&input, call.task()).map_err(|e| call.groom(&e));
-    let strands = call.memo_strands(&key(input.roots), &[Arc::clone(&source)], made)?;
-    let material = extras.material.map_or_else(|| this.material.clone(), |look| look.0);
-    Ok(give(Lock {
-        strands,
-        guides: Arc::clone(&this.strands),
-        area: this.area.clone(),
-        material,
-        overlay: Arc::clone(&this.overlay),
-        source,
-        stands_for: roots.len() as f32 / few.max(1) as f32,
-    }))
 }
 
 fn material(call: &Call) -> Result<Value> {

@@ -1,9 +1,11 @@
 //! What a test sees of a style: its scene, the parts by name, their figures.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use glam::Affine3A;
 use mlua::Lua;
 
 use super::super::call::{Call, Result};
@@ -18,7 +20,7 @@ use crate::geometry::{Bounds, Solid, Strands, measure};
 use crate::groom::count_inside;
 use crate::head::{Head, roots};
 use crate::params::{Handle, Object, Table, Value};
-use crate::scene::{Body, Part, Scene};
+use crate::scene::{Body, Motion, Part, Scene};
 use crate::task::Task;
 
 /// How near to a strand a place of the scalp is covered, cm.
@@ -54,6 +56,17 @@ crate::params! {
     pub struct SceneOf("Test:scene") {
         /// What `coif.scene` gave.
         scene: Arc<Scene>;
+        /// Of a scene that moves, which frame, from 1; the one that its still pictures show when left out.
+        frame: Option<usize>, range(1.0, 1e9);
+    }
+}
+
+crate::params! {
+    /// A scene that moves as it is at a frame; its figures are then those of that frame. Without it they are those of the
+    /// frame that still pictures show.
+    pub struct AtFields("TestScene:at") {
+        /// Which frame, from 1; past the end a loop begins anew, anything else stands still.
+        frame: usize, range(1.0, 1e9);
     }
 }
 
@@ -69,6 +82,8 @@ crate::params! {
 pub struct Style {
     /// What to run; none for a scene that is there already.
     wanted: Option<Options>,
+    /// Which frame, from 0; the one of still pictures when none is chosen.
+    frame: Option<usize>,
     tested: Mutex<Option<Arc<Tested>>>,
 }
 
@@ -78,8 +93,12 @@ impl Object for Style {
 
 /// A scene with the heads it may stand on.
 pub struct Tested {
-    /// The scene.
+    /// The scene, still, at the frame that is tested.
     pub scene: Arc<Scene>,
+    /// As the style made it.
+    moving: Arc<Scene>,
+    /// What the head's motion has done by then.
+    placed: Affine3A,
     heads: Vec<Arc<Head>>,
     /// Per part, and at the end of the whole.
     figures: Vec<OnceLock<Value>>,
@@ -104,6 +123,7 @@ const FIGURES: &str = "Figures. Of hair: `strands`, `points`, `guides`, `mean_le
 pub fn nouns() -> Vec<Noun> {
     let methods = vec![
         Entry::positional::<WithFields>("TestScene:with", "TestScene", with),
+        Entry::positional::<AtFields>("TestScene:at", "TestScene", at),
         Entry::plain("TestScene:stats", FIGURES, "table", scene_stats)
             .about("The figures of all parts together; see `TestPart:stats`.")
             .sealed("the table of figures"),
@@ -136,14 +156,15 @@ pub fn run(call: &Call) -> Result<Value> {
         Some(parameters) => set(call, options, parameters)?,
         None => options,
     };
-    Ok(give(Style { wanted: Some(options), tested: Mutex::default() }))
+    Ok(give(Style { wanted: Some(options), frame: None, tested: Mutex::default() }))
 }
 
 /// `Test:scene`.
 pub fn scene_of(call: &Call) -> Result<Value> {
     let fields: SceneOf = call.read()?;
-    let tested = Tested::new(fields.scene, heads(call.session));
-    Ok(give(Style { wanted: None, tested: Mutex::new(Some(Arc::new(tested))) }))
+    let frame = fields.frame.map(|f| f - 1);
+    let tested = Tested::new(fields.scene, heads(call.session), frame);
+    Ok(give(Style { wanted: None, frame, tested: Mutex::new(Some(Arc::new(tested))) }))
 }
 
 fn with(call: &Call) -> Result<Value> {
@@ -152,7 +173,15 @@ fn with(call: &Call) -> Result<Value> {
         return Err(call.problem("this scene is not of a style, so it has no parameters", None));
     };
     let wanted = Some(set(call, wanted.clone(), &fields.parameters)?);
-    Ok(give(Style { wanted, tested: Mutex::default() }))
+    Ok(give(Style { wanted, frame: this.frame, tested: Mutex::default() }))
+}
+
+fn at(call: &Call) -> Result<Value> {
+    let (this, fields) = (call.this::<Style>()?, call.read::<AtFields>()?);
+    let frame = Some(fields.frame - 1);
+    let known = this.tested.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let tested = known.map(|t| Arc::new(t.at(fields.frame - 1)));
+    Ok(give(Style { wanted: this.wanted.clone(), frame, tested: Mutex::new(tested) }))
 }
 
 /// The options with more parameters.
@@ -192,14 +221,14 @@ impl Style {
     fn tested(&self, lua: &Lua) -> mlua::Result<Arc<Tested>> {
         let mut tested = self.tested.lock().unwrap_or_else(PoisonError::into_inner);
         if let (None, Some(wanted)) = (&*tested, &self.wanted) {
-            *tested = Some(Arc::new(ran(lua, &*session(lua)?, wanted)?));
+            *tested = Some(Arc::new(ran(lua, &*session(lua)?, wanted, self.frame)?));
         }
         tested.clone().ok_or_else(|| mlua::Error::runtime("a scene without a style"))
     }
 }
 
 /// Runs a style in a VM and a session of its own.
-fn ran(lua: &Lua, outer: &Session, wanted: &Options) -> mlua::Result<Tested> {
+fn ran(lua: &Lua, outer: &Session, wanted: &Options, frame: Option<usize>) -> mlua::Result<Tested> {
     let inner = Rc::new(Session::new(wanted, outer.access.files(), [], &outer.task.child()));
     let outcome = host::run_session(&inner);
     outer.sources.borrow_mut().extend(outcome.sources);
@@ -215,16 +244,32 @@ fn ran(lua: &Lua, outer: &Session, wanted: &Options) -> mlua::Result<Tested> {
     match (outcome.ending, outcome.scene) {
         (Ending::Done, Some(scene)) => {
             diagnostics.into_iter().for_each(|d| outer.warn(d));
-            Ok(Tested::new(Arc::new(scene), heads(&inner)))
+            Ok(Tested::new(Arc::new(scene), heads(&inner), frame))
         }
         _ => Err(Raised(diagnostics).into()),
     }
 }
 
 impl Tested {
-    fn new(scene: Arc<Scene>, heads: Vec<Arc<Head>>) -> Self {
+    fn new(moving: Arc<Scene>, heads: Vec<Arc<Head>>, frame: Option<usize>) -> Self {
+        let frame = frame.unwrap_or(moving.shown.still);
+        let placed = moving.parts.iter().find_map(|p| match (&p.body, &p.motion) {
+            (Body::Mesh(..), Some(Motion::Rigid(clip))) => clip.at(frame).map(|t| **t),
+            _ => None,
+        });
+        let scene = if moving.timeline().is_some() { Arc::new(moving.at(frame)) } else { Arc::clone(&moving) };
         let figures = vec![OnceLock::new(); scene.parts.len() + 1];
-        Self { scene, heads, figures }
+        Self { scene, moving, placed: placed.unwrap_or(Affine3A::IDENTITY), heads, figures }
+    }
+
+    /// The strands of some of the parts, as seen from the head.
+    fn strands<'a>(&self, parts: &'a [Part]) -> Vec<Cow<'a, Strands>> {
+        let is_moved = self.placed != Affine3A::IDENTITY;
+        let seen = |s: &'a Strands| match is_moved {
+            true => Cow::Owned(s.transformed(&self.placed.inverse())),
+            false => Cow::Borrowed(s),
+        };
+        strands(parts).into_iter().map(seen).collect()
     }
 
     /// The tested scene in a field: what `t:run` gave, or a scene of the test's own.
@@ -239,17 +284,23 @@ impl Tested {
                     .map_err(|e| Raised::inside(&e).unwrap_or_else(|| call.problem_at(path, e.to_string(), None)));
             }
             if let Some(scene) = handle.get::<Scene>() {
-                return Ok(Arc::new(Self::new(scene, heads(call.session))));
+                return Ok(Arc::new(Self::new(scene, heads(call.session), None)));
             }
         }
         let message = format!("expected a scene, got {} `{value}`", value.type_name());
         Err(call.problem_at(path, message, Some("as `t:run \"style.lua\" {}` gives one".into())))
     }
 
+    /// The same scene at another frame, from 0.
+    #[must_use]
+    pub fn at(&self, frame: usize) -> Self {
+        Self::new(Arc::clone(&self.moving), self.heads.clone(), Some(frame))
+    }
+
     /// Heads that stand in the scene; any that its hair can have grown on when none does.
     fn standing(&self) -> Vec<&Arc<Head>> {
         let is_in = |head: &&Arc<Head>| {
-            self.scene.parts.iter().any(|p| matches!(&p.body, Body::Mesh(mesh, _) if Arc::ptr_eq(mesh, &head.mesh)))
+            self.moving.parts.iter().any(|p| matches!(&p.body, Body::Mesh(mesh, _) if Arc::ptr_eq(mesh, &head.mesh)))
         };
         let found: Vec<&Arc<Head>> = self.heads.iter().filter(is_in).collect();
         if found.is_empty() { self.heads.iter().collect() } else { found }
@@ -257,7 +308,10 @@ impl Tested {
 
     /// Figures of some of the parts; `slot` is where they are kept.
     fn figures(&self, parts: &[Part], slot: usize, task: &Task) -> Value {
-        let compute = || figures(parts, &self.standing(), task);
+        let compute = || {
+            let hair = self.strands(parts);
+            figures(parts, &hair.iter().map(|s| &**s).collect::<Vec<_>>(), &self.standing(), task)
+        };
         self.figures.get(slot).map_or_else(compute, |kept| kept.get_or_init(compute).clone())
     }
 }
@@ -272,8 +326,7 @@ fn strands(parts: &[Part]) -> Vec<&Strands> {
     parts.iter().filter_map(|p| if let Body::Hair(hair) = &p.body { Some(&*hair.strands) } else { None }).collect()
 }
 
-fn figures(parts: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
-    let hair = strands(parts);
+fn figures(parts: &[Part], hair: &[&Strands], heads: &[&Arc<Head>], task: &Task) -> Value {
     let mut bounds = Bounds::EMPTY;
     let (mut points, mut triangles, mut guides, mut tufts) = (0, 0, 0, 0);
     for part in parts {
@@ -308,15 +361,15 @@ fn figures(parts: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
     if !hair.is_empty() {
         let lengths: Vec<f32> = hair.iter().flat_map(|s| (0..s.count()).map(|i| s.length(i))).collect();
         let sum: f64 = lengths.iter().copied().map(f64::from).sum();
-        let inside: usize = heads.iter().map(|h| within(&h.solid, &hair)).sum();
+        let inside: usize = heads.iter().map(|h| within(&h.solid, hair)).sum();
         put("strands", lengths.len() as f64);
         put("guides", guides as f64);
         put("mean_length", plain((sum / lengths.len().max(1) as f64) as f32));
         put("longest", plain(lengths.iter().copied().fold(0.0, f32::max)));
         put("shortest", plain(lengths.iter().copied().reduce(f32::min).unwrap_or(0.0)));
         put("inside", inside as f64);
-        put("symmetry", plain(measure::mirror_distance(&hair)));
-        if let Some(fraction) = covered(heads, &hair, REACH, task) {
+        put("symmetry", plain(measure::mirror_distance(hair)));
+        if let Some(fraction) = covered(heads, hair, REACH, task) {
             put("coverage", fraction);
         }
     }
@@ -361,7 +414,9 @@ fn part_stats(call: &Call) -> Result<Value> {
 fn coverage(call: &Call) -> Result<Value> {
     let (this, fields) = (call.this::<TestPart>()?, call.read::<CoverageFields>()?);
     let part = this.tested.scene.parts.get(this.index..=this.index).unwrap_or(&[]);
-    let fraction = covered(&this.tested.standing(), &strands(part), fields.reach, call.task());
+    let hair = this.tested.strands(part);
+    let hair: Vec<&Strands> = hair.iter().map(|s| &**s).collect();
+    let fraction = covered(&this.tested.standing(), &hair, fields.reach, call.task());
     fraction.map(Value::Number).ok_or_else(|| call.problem("there is no head whose scalp could be covered", None))
 }
 

@@ -144,7 +144,7 @@ pub fn diff(options: &DiffOptions, files: &Arc<dyn Files>, task: &Task) -> DiffR
         let ending = outcome.ending;
         report.outcomes.push(outcome);
         match (ending, scene) {
-            (Ending::Done, Some(scene)) => scenes.push(scene),
+            (Ending::Done, Some(scene)) => scenes.push(scene.still()),
             (Ending::Cancelled, _) => {
                 report.result = Err(RunError::Cancelled);
                 return report;

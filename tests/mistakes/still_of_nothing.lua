@@ -1,0 +1,1 @@
+return coif.scene { coif.head(), still = 3 }
