@@ -36,6 +36,21 @@ crate::params! {
     }
 }
 
+impl SimulateOptions {
+    fn rate(&self, motion: Option<&Clip<Affine3A>>) -> f32 {
+        self.rate.or(motion.map(|m| m.rate)).unwrap_or(24.0)
+    }
+
+    fn duration(&self, motion: Option<&Clip<Affine3A>>) -> f32 {
+        self.duration.or(motion.map(Clip::duration)).unwrap_or(2.0)
+    }
+
+    /// How many frames follow the first; with the motion that the head has.
+    pub fn frames(&self, motion: Option<&Clip<Affine3A>>) -> usize {
+        (self.duration(motion) * self.rate(motion)).round().max(1.0) as usize
+    }
+}
+
 /// Most nodes in all frames of a clip.
 const MOST_IN_FRAMES: u64 = 500_000_000;
 
@@ -107,15 +122,14 @@ pub fn simulate(
     motion: Option<&Clip<Affine3A>>,
     task: &Task,
 ) -> Result<Warned<Clip<Strands>>, DynamicsError> {
-    let rate = options.rate.or(motion.map(|m| m.rate)).unwrap_or(24.0);
+    let rate = options.rate(motion);
     check_value("the rate", rate, 0.1, 10_000.0)?;
     if let Some(m) = motion.filter(|m| (m.rate - rate).abs() > 1e-3 * rate) {
         return Err(DynamicsError::Rate { motion: m.rate, clip: rate });
     }
-    let duration = options.duration.or(motion.map(Clip::duration)).unwrap_or(2.0);
-    check_value("the duration", duration, 0.0, 36_000.0)?;
+    check_value("the duration", options.duration(motion), 0.0, 36_000.0)?;
     let is_loop = options.r#loop.unwrap_or_else(|| motion.is_some_and(|m| m.looped));
-    let steps = (duration * rate).round().max(1.0) as usize;
+    let steps = options.frames(motion);
     let count = (steps as u64 + 1).saturating_mul(hair.strands.points.len() as u64);
     if count > MOST_IN_FRAMES {
         return Err(DynamicsError::TooMany { what: "nodes in all frames", count, limit: MOST_IN_FRAMES });

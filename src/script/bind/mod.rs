@@ -6,6 +6,8 @@
 mod clip;
 mod constants;
 mod domain;
+mod dynamics;
+mod force;
 mod golden;
 mod guides;
 mod head;
@@ -39,6 +41,7 @@ pub fn registry() -> Registry {
         params::functions(),
         head::functions(),
         domain::functions(),
+        force::functions(),
         tuft::functions(),
         piece::functions(),
         material::functions(),
@@ -50,6 +53,7 @@ pub fn registry() -> Registry {
         vec![region::noun(), guides::noun(), strands::noun()],
         clip::nouns(),
         domain::nouns(),
+        force::nouns(),
         tuft::nouns(),
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
         tested::nouns(),

@@ -85,7 +85,7 @@ impl crate::params::FieldType for Look {
 
 /// Strands.
 pub fn noun() -> Noun {
-    let methods = vec![
+    let mut methods = vec![
         Entry::table::<DeformOptions>("Strands:natural", "Strands", natural),
         Entry::both::<FillOptions, FillExtras>("Strands:fill", "Strands", fill_strands),
         Entry::positional::<MaterialFields>("Strands:material", "Strands", material),
@@ -98,6 +98,7 @@ pub fn noun() -> Noun {
         )
         .sealed("the table of figures"),
     ];
+    methods.extend(super::dynamics::methods());
     let getters = vec![Getter {
         name: "count",
         doc: "How many strands.",
