@@ -15,6 +15,8 @@ use glam::{Affine3A, Vec2, Vec3};
 
 const STRANDS: usize = 40_000;
 const POINTS: usize = 64;
+/// A draft has one strand of so many, each so many times as wide.
+const THINNED: usize = 7;
 const VIEWS: [View; 3] = [View::Front, View::Left, View::ThreeQuarter];
 
 /// An egg for a head, about 20,000 triangles.
@@ -71,8 +73,8 @@ fn long(count: usize) -> Strands {
     strands
 }
 
-fn scene() -> Scene {
-    let strands = Arc::new(long(STRANDS));
+fn scene(count: usize) -> Scene {
+    let strands = Arc::new(long(count));
     let material = HairMaterial::default();
     let hair = Hair { guides: strands.clone(), strands, material, overlay: Arc::new(Overlay::default()) };
     let head = Body::Mesh(Arc::new(egg()), MeshMaterial::default());
@@ -93,17 +95,21 @@ fn options() -> SheetOptions {
     SheetOptions { width: 1024, height: 1024, supersample: 1, lettering: false, ..SheetOptions::default() }
 }
 
-/// The whole sheet, three views.
-#[divan::bench(sample_count = 5)]
-fn sheet(bencher: Bencher) {
-    let scene = scene();
-    bencher.bench_local(|| render::sheet(&scene, &options(), &Task::new()).expect("a picture"));
+/// The whole sheet, three views; as a draft of every seventh strand; and at two by two samples per pixel.
+#[divan::bench(sample_count = 5, args = ["whole", "draft", "2 x 2 samples"])]
+fn sheet(bencher: Bencher, how: &str) {
+    let (scene, options) = match how {
+        "draft" => (scene(STRANDS / THINNED), SheetOptions { strand_width: THINNED as f32, ..options() }),
+        "whole" => (scene(STRANDS), options()),
+        _ => (scene(STRANDS), SheetOptions { supersample: 2, ..options() }),
+    };
+    bencher.bench_local(|| render::sheet(&scene, &options, &Task::new()).expect("a picture"));
 }
 
 /// Coding the sheet as PNG, for watching and for keeping.
 #[divan::bench(sample_count = 5, args = [Speed::Fast, Speed::Balanced])]
 fn png(bencher: Bencher, speed: Speed) {
-    let picture = render::sheet(&scene(), &options(), &Task::new()).expect("a picture");
+    let picture = render::sheet(&scene(STRANDS), &options(), &Task::new()).expect("a picture");
     bencher.bench_local(|| render::png::encode(&picture, speed).expect("a file"));
 }
 
@@ -123,7 +129,7 @@ fn memory(bencher: Bencher) {
 
 /// Times per step, summed over the views: the least of three runs.
 fn breakdown() {
-    let scene = scene();
+    let scene = scene(STRANDS);
     let mut best: Option<(Duration, BTreeMap<String, Duration>)> = None;
     for _ in 0..3 {
         let steps = Arc::new(Mutex::new((Instant::now(), String::new(), BTreeMap::new())));

@@ -1,9 +1,11 @@
 //! Stylised hair from script to files: the figures of the papers and the cartoon examples.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use coif::export::{GlbOptions, glb};
+use coif::export::{GlbOptions, UsdaOptions, glb, usda};
+use coif::geometry::{Bvh, Mesh};
 use coif::render::{Picture, SheetOptions, sheet};
 use coif::scene::{Background, LockKind, Locks, Scene, Shading, View};
 use coif::script::{Disk, Ending, Options, Outcome, run, show_all};
@@ -187,6 +189,41 @@ fn a_budget_is_kept_and_told() {
     assert!(workbench::keep_within(&mut scene, 10).is_err());
 }
 
+#[test]
+fn caps_and_buns_are_in_the_budget() {
+    let (mut scene, _) = script("examples/cartoon/top_bun.lua", &[("strands", "100")]);
+    let of = |scene: &Scene| -> Vec<(LockKind, Mesh)> {
+        scene.locks().map(|(_, l)| (l.kind, l.mesh.mesh.clone())).collect()
+    };
+    let before = of(&scene);
+    assert!(before.iter().any(|(k, _)| *k == LockKind::Cap) && before.iter().any(|(k, _)| *k == LockKind::Bun));
+    let done = workbench::keep_within(&mut scene, 6000).unwrap();
+    let after = of(&scene);
+    let sum = |all: &[(LockKind, Mesh)]| all.iter().map(|(_, m)| m.triangles.len()).sum::<usize>();
+    assert_eq!((done.before, done.after), (sum(&before), sum(&after)));
+    assert!(done.after <= 6000 && done.after > 4000 && done.pieces == 3, "{done:?}");
+    let tolerance = done.tolerance.unwrap();
+    for ((kind, was), (_, is)) in before.iter().zip(&after).filter(|((k, _), _)| *k != LockKind::Tufts) {
+        is.validate().unwrap();
+        assert!(is.triangles.len() < was.triangles.len() && is.uvs.len() == is.positions.len(), "{kind:?}");
+        // Still closed: it has an inside, and every edge its opposite.
+        let mut edges = BTreeMap::new();
+        let at = |m: &Mesh, v: u32| m.positions[v as usize].to_array().map(|c| (c + 0.0).to_bits());
+        for t in &is.triangles {
+            for k in 0..3 {
+                let (a, b) = (at(is, t[k]), at(is, t[(k + 1) % 3]));
+                *edges.entry((a, b)).or_insert(0) += 1;
+                *edges.entry((b, a)).or_insert(0) -= 1;
+            }
+        }
+        assert!(edges.values().all(|&n| n == 0), "{kind:?} is open");
+        // And near what it was: each removed corner lies close to the new surface.
+        let tree = Bvh::new(&is.positions, &is.triangles);
+        let off = was.positions.iter().filter_map(|&p| tree.closest(p, 100.0)).map(|c| c.distance).fold(0.0, f32::max);
+        assert!(off <= 2.0 * tolerance, "{kind:?}: {off} of {tolerance}");
+    }
+}
+
 /// How many pixels are nearly of a colour.
 fn near(picture: &Picture, colour: [u8; 3], by: i32) -> usize {
     let close = |c: &[u8]| c.iter().zip(colour).all(|(&a, b)| (i32::from(a) - i32::from(b)).abs() <= by);
@@ -203,9 +240,25 @@ fn toon_shading_has_flat_tones_and_ink() {
     let mut soft = one_view(scene.clone(), Background::White);
     soft.look.shading = Shading::Soft;
     assert!(near(&picture(&soft, 200), [0x3f, 0x7f, 0xc4], 2) < lit / 5);
-    // Lines: dark, thin, and there is paper beyond them.
-    let dark = toon.pixels.chunks_exact(3).filter(|c| c[0] < 80 && c[1] < 80 && c[2] < 125).count();
-    assert!((30..4000).contains(&dark), "{dark}");
+    // Lines: at least the outline of the whole figure, which is no shorter than that of its box, at the thinnest that
+    // a tapered line gets, times a half for corners that the box has and the figure has not; and at most a full line
+    // around every tuft on both sides.
+    let width = 400;
+    let toon = picture(&one_view(scene.clone(), Background::White), width);
+    let paper = |x: u32, y: u32| toon.pixels[3 * (y * width + x) as usize..][..3] == [255; 3];
+    let (mut lo, mut hi) = ([width; 2], [0; 2]);
+    for (x, y) in (0..width).flat_map(|y| (0..width).map(move |x| (x, y))).filter(|&(x, y)| !paper(x, y)) {
+        lo = [lo[0].min(x), lo[1].min(y)];
+        hi = [hi[0].max(x), hi[1].max(y)];
+    }
+    let perimeter = 2.0 * f64::from(hi[0] - lo[0] + hi[1] - lo[1]);
+    // A full line is 2.1 pixels wide at 640, but no less than 0.55 times that.
+    let pen = 2.1 * (f64::from(width) / 640.0).max(0.55);
+    let dark = toon.pixels.chunks_exact(3).filter(|c| c[0] < 110 && c[1] < 110 && c[2] < 140).count() as f64;
+    let tallest = f64::from(hi[1] - lo[1]);
+    let most = (tufts(&scene).count() as f64 * 2.0 * tallest + 4.0 * perimeter) * pen;
+    assert!(dark > 0.5 * 0.28 * pen * perimeter && dark < most, "{dark}: {perimeter} x {pen}, {most}");
+    let toon = picture(&one_view(scene.clone(), Background::White), 200);
     assert!(near(&toon, [255; 3], 0) > 8000);
     let night = picture(&one_view(scene, Background::Dark), 200);
     assert!(near(&night, [0x3f, 0x7f, 0xc4], 2) > 2500 && near(&night, [255; 3], 0) == 0);
@@ -220,4 +273,48 @@ fn pictures_do_not_depend_on_threads() {
         pool.install(|| (picture(&scene, 120), glb(&scene, &GlbOptions::default(), &Task::new()).unwrap()))
     };
     assert!(on(1) == on(3));
+}
+
+#[test]
+fn every_tuft_has_its_colour_in_usd() {
+    let (scene, _) = script("examples/cartoon/twin_tails.lua", &[]);
+    let text = String::from_utf8(usda(&scene, &UsdaOptions::default(), &Task::new()).unwrap()).unwrap();
+    let locks = scene.locks().count();
+    assert_eq!(text.matches("UsdPrimvarReader_float3").count(), locks);
+    assert_eq!(text.matches("inputs:diffuseColor.connect = </").count(), locks);
+    assert_eq!(text.matches("string inputs:varname = \"displayColor\"").count(), locks);
+    // Every connection leads to a shader that is there.
+    for line in text.lines().filter_map(|l| l.trim().strip_prefix("color3f inputs:diffuseColor.connect = <")) {
+        let name = line.split('/').nth(3).unwrap();
+        assert!(
+            line.ends_with("/Colour.outputs:result>") && text.contains(&format!("def Material \"{name}\"")),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn three_tones_have_a_darker_one() {
+    let source = r##"
+        local head = coif.head { style = "cartoon" }
+        local tones = coif.params { tones = { 2, min = 2, max = 3 } }.tones
+        local look = coif.material.tuft { colour = "#3f7fc4", shine = 0, tones = tones }
+        return coif.scene { head, coif.cap { thickness = 1, material = look }, shading = "toon" }
+    "##;
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("tones.lua");
+    std::fs::write(&path, source).unwrap();
+    let dark = |tones: &str| {
+        let (scene, _) = script(path.to_str().unwrap(), &[("tones", tones)]);
+        let mut scene = scene;
+        scene.views = vec![View::Back];
+        let picture = picture(&scene, 200);
+        // Between the ink and the colour in the shade.
+        let blue = |c: &&[u8]| c[2] > c[0].saturating_add(40) && (100..130).contains(&c[2]);
+        let lit = near(&picture, [0x3f, 0x7f, 0xc4], 2);
+        (lit, picture.pixels.chunks_exact(3).filter(blue).count())
+    };
+    let (two, three) = (dark("2"), dark("3"));
+    assert_eq!(two.0, three.0, "the light is where it was");
+    assert!(three.1 > two.1 + 80, "{two:?} {three:?}");
 }

@@ -6,12 +6,12 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use coif::export::StrandForm;
+use coif::export::{Format, StrandForm};
 use coif::render::SheetOptions;
 use coif::scene::Hair;
 use coif::script::{Ending, Memory, Options, Origin};
 use coif::task::Task;
-use coif::workbench::{Report, RunError, RunOptions, draft};
+use coif::workbench::{Films, Report, RunError, RunOptions, draft};
 
 const SCRIPT: &str = r##"
 local head = coif.head()
@@ -50,6 +50,8 @@ impl Bench {
             strands: StrandForm::None,
             tolerance: 0.05,
             guides: false,
+            formats: vec![Format::Glb],
+            films: Films { moving: true, turntable: false },
             count_inside: false,
             triangles: None,
         }

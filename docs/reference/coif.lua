@@ -447,6 +447,7 @@ function coif.fill(fields) end
 ---@field shade? coif.Colour # Colour in the shade, of toon shading; a darker `colour` when left out.
 ---@field light? coif.Colour # Colour of the band of light, of toon shading; a lighter `colour` when left out.
 ---@field ink? coif.Colour # Colour of the outline, of toon shading; a very dark `colour` when left out.
+---@field tones? number # Number of flat tones of toon shading: 2 for light and shade, 3 for a darker one in the depth too. [whole; 2 to 3; default 2]
 ---@field shine? number # Width and strength of the light: 0 none, 1 much. [0 to 1; default 0.5]
 ---@field roughness? number # 0 mirror to 1 chalk, of soft shading and exported files. [0 to 1; default 0.5]
 
@@ -1075,13 +1076,15 @@ function TestScene:stats() end
 local TestPart = {}
 
 ---Figures. Of hair: `strands`, `points`, `guides`, `mean_length`, `longest`, `shortest` (cm), `inside` (strands
----with a node or a segment inside the head), `coverage` (the fraction of the scalp within 1 cm of a strand),
----`symmetry` (mean distance in cm from the hair's mirror image to the hair). Of a surface: `points`, `triangles`.
----Of both: `min` and `max`, the corners of the bounding box.
+---with a node or a segment inside the head, and tufts that lie too deep in it beyond their buried bases, `bury`
+---left out), `coverage` (the fraction of the scalp within 1 cm of a strand or of a surface of stylised hair),
+---`symmetry` (mean distance in cm from the hair's mirror image to the hair; where there are strands and locks, of
+---those that have the greater). Of a surface: `points`, `triangles`, `tufts`. Of all: `min` and `max`, the corners
+---of the bounding box.
 ---@return table<string, any>
 function TestPart:stats() end
 
----The fraction of the scalp that has a strand within some distance.
----@param reach? number # How near a strand must come. [cm; 0.01 to 100; default 1]
+---The fraction of the scalp that has hair within some distance: a strand, or a surface of stylised hair.
+---@param reach? number # How near hair must come. [cm; 0.01 to 100; default 1]
 ---@return number
 function TestPart:coverage(reach) end

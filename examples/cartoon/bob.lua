@@ -42,7 +42,30 @@ end
 local front = {}
 for i = -4, 4 do table.insert(front, fringe(13.5 * i, 3 - 0.25 * math.abs(i) + (i % 2))) end
 
+-- Between fringe and bob, before the ears: a narrow lock that frames the face and hides the hairline.
+local frame = {}
+for _, place in { { 60, 9.4, 2.8 }, { 53, 7.4, 2.6 } } do
+  local azimuth, fall, width = place[1], place[2] * p.length, place[3]
+  local over = at(azimuth, 2, 2.0)
+  table.insert(frame, coif.tuft {
+    stroke = {
+      at(azimuth, 72), at(azimuth, 54, 1.9), at(azimuth, 28, 2.2), over,
+      over - vector.create(0.2, 0.55 * fall, 0.1), over - vector.create(1.3, fall, 0.1),
+    },
+    profile = { { 0, 0.8, 0.7 }, { 0.3, width, 1.2 }, { 0.75, width, 1.2 }, { 1, 0, 0 } },
+    bend = 40, material = look, lift = true,
+  })
+end
+for i = 1, 2 do table.insert(frame, frame[i]:mirrored()) end
+
+-- The cap ends under the fringe and the frame, so that its border is nowhere to be seen.
+local border = {}
+for _, place in { { 0, 30 }, { 36, 28 }, { 62, 20 }, { 84, 10 }, { 108, -14 }, { 140, -34 }, { 180, -40 } } do
+  table.insert(border, at(place[1], place[2]))
+end
+for i = 6, 2, -1 do table.insert(border, vector.create(-border[i].x, border[i].y, border[i].z)) end
+
 return coif.scene {
-  head, coif.cap { thickness = 1, material = look }, sides, front,
+  head, coif.cap { border = border, thickness = 1, material = look }, sides, frame, front,
   shading = "toon", skin = "#f6d7c0", views = { "front", "three-quarter", "left", "back" },
 }

@@ -45,6 +45,13 @@ for i = -4, 4 do
   })
 end
 
+-- The cap ends under the fringe and the side locks, so that its border is nowhere to be seen.
+local border = {}
+for _, place in { { 0, 30 }, { 36, 28 }, { 62, 20 }, { 84, 10 }, { 108, -14 }, { 140, -34 }, { 180, -40 } } do
+  table.insert(border, at(place[1], place[2]))
+end
+for i = 6, 2, -1 do table.insert(border, vector.create(-border[i].x, border[i].y, border[i].z)) end
+
 -- Side locks before the ears, cut at the jaw.
 local side = coif.tuft {
   stroke = { at(62, 66), at(61, 46, 1.5), at(60, 26, 1.9), at(59, 4, 1.7), at(57, -22, 1.9), at(54, -44, 2.4) },
@@ -53,6 +60,6 @@ local side = coif.tuft {
 }
 
 return coif.scene {
-  head, coif.cap { thickness = 0.9, material = look }, curtain, front, side, side:mirrored(),
+  head, coif.cap { border = border, thickness = 0.9, material = look }, curtain, front, side, side:mirrored(),
   shading = "toon", skin = "#f8dcc8", views = { "front", "three-quarter", "left", "back" },
 }

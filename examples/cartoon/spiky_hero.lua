@@ -5,7 +5,7 @@ local p = coif.params {
 }
 
 local head = coif.head { style = "cartoon" }
-local look = coif.material.tuft { colour = p.hair, shine = 0.4 }
+local look = coif.material.tuft { colour = p.hair, shine = 0.4, tones = 3 }
 
 -- A spike grows at (azimuth, elevation), lies on the hair at first, and rises to a tip over another place.
 local function spike(azimuth, elevation, to_azimuth, to_elevation, height, width)
@@ -26,32 +26,42 @@ local function spike(azimuth, elevation, to_azimuth, to_elevation, height, width
 end
 
 local spikes = {}
+-- A spike and its fellow on the other side, which is never quite its mirror image: turned and drawn out a little.
 local function add(list)
-  for _, s in list do
-    local one = spike(s[1], s[2], s[3], s[4], s[5], s[6])
-    table.insert(spikes, one)
-    if s.lone == nil then table.insert(spikes, one:mirrored()) end
+  for i, s in list do
+    table.insert(spikes, spike(s[1], s[2], s[3], s[4], s[5], s[6]))
+    if s.lone == nil then
+      local turn, grow = 5 * math.sin(7 * i), 1 + 0.16 * math.sin(3 * i + 1)
+      table.insert(spikes, spike(0.6 * turn - s[1], s[2] + 2, turn - s[3], s[4] + 1.4 * turn, grow * s[5], s[6]))
+    end
   end
 end
 
--- The brow: locks that fall onto the forehead, one of them across it.
+-- The brow: locks that fall onto the forehead from a parting over the left eye, one of them across it.
 add {
-  { 6, 68, -13, 4, 1.5, 5.0, lone = true }, { -12, 66, -32, -2, 1.7, 4.8, lone = true },
-  { 22, 67, 13, 10, 1.6, 4.6, lone = true }, { 32, 64, 38, -1, 1.9, 5.0, lone = true },
-  { -32, 62, -50, -4, 2.0, 4.8, lone = true }, { 48, 58, 58, -6, 2.0, 5.0, lone = true },
-  { 62, 48, 72, -24, 2.0, 4.2 },
+  { 10, 69, -16, 1, 1.6, 5.0, lone = true }, { -14, 66, -37, -4, 1.8, 4.8, lone = true },
+  { 22, 68, 4, 11, 1.5, 3.6, lone = true }, { 30, 66, 30, 2, 2.0, 4.8, lone = true },
+  { -34, 61, -55, -7, 2.1, 4.6, lone = true }, { 46, 60, 56, -5, 2.2, 5.2, lone = true },
+  { 62, 48, 72, -24, 2.2, 4.2 },
 }
--- Over the brow: up and outward.
+-- Over the brow: up, and all of them leaning to the head's right as if the wind stood there.
 add {
-  { 10, 80, 14, 62, 11, 6, lone = true }, { -16, 78, -24, 58, 10, 6, lone = true }, { 40, 74, 44, 50, 10, 6 },
-  { 62, 68, 66, 38, 9.4, 6 }, { 82, 58, 82, 24, 8, 5.8 }, { 94, 44, 90, 8, 6.2, 5.4 },
+  { 14, 80, -8, 66, 12.5, 6.4, lone = true }, { -20, 77, -44, 58, 10.5, 6, lone = true },
+  { 44, 75, 34, 54, 11, 5.6, lone = true }, { -52, 70, -70, 44, 9, 5.4, lone = true },
+  { 64, 66, 66, 40, 9.6, 6, lone = true }, { 84, 57, 86, 25, 8, 5.6 }, { 96, 43, 94, 8, 6.4, 5.2 },
 }
--- The crown and the back: backward, the lower the flatter.
+-- The crown: long spikes that lean back, one beside the other.
 add {
-  { 180, 84, 176, 62, 11, 6.4, lone = true }, { 120, 78, 116, 54, 10.5, 6.2 }, { 152, 68, 154, 44, 10, 6.4 },
-  { 112, 60, 106, 30, 9, 6.2 }, { 136, 54, 134, 24, 8.8, 6.2 }, { 174, 56, 172, 26, 8.8, 6.4 }, { 158, 40, 156, 8, 7.6, 6.2 },
-  { 112, 38, 108, 2, 6.4, 5.8 }, { 134, 30, 132, -6, 6.2, 5.8 }, { 172, 26, 174, -12, 6, 5.8 }, { 104, 18, 108, -18, 3.8, 4.8 },
-  { 126, 10, 128, -30, 3.8, 5.2 }, { 152, 14, 150, -28, 4.6, 5.6 }, { 180, 2, 180, -42, 3.6, 5.4, lone = true }, { 160, -4, 158, -44, 3, 5 },
+  { 150, 86, 196, 58, 12, 6.6, lone = true }, { 118, 78, 128, 50, 11.4, 6.0, lone = true },
+  { -116, 79, -102, 56, 9.6, 6.0, lone = true }, { 160, 70, 172, 40, 10.4, 6.0, lone = true },
+  { -154, 68, -140, 38, 11, 6.4, lone = true },
+}
+-- The back: the lower the flatter, in three staggered rows.
+add {
+  { 110, 58, 108, 27, 9.2, 6.0 }, { 138, 52, 142, 20, 8.4, 5.6 }, { 172, 50, 186, 18, 9.6, 6.2, lone = true },
+  { 122, 34, 118, -2, 6.6, 5.6 }, { 152, 30, 158, -8, 7.2, 5.8 }, { 182, 26, 176, -14, 6.2, 5.4, lone = true },
+  { 106, 16, 110, -20, 3.8, 4.6 }, { 134, 10, 138, -30, 4.4, 5.2 }, { 164, 6, 170, -36, 4.6, 5.2 },
+  { 150, -6, 146, -44, 3, 4.4 }, { 180, -8, 188, -50, 3.2, 4.6, lone = true },
 }
 
 return coif.scene {

@@ -140,7 +140,7 @@ pub struct RunArguments {
     /// Farthest that a strand in the GLB may lie from its true course
     #[arg(long, value_name = "CM", default_value_t = 0.1, value_parser = tolerance)]
     pub tolerance: f32,
-    /// Bring all tufts together within this many triangles; rings and sides go first where it shows least
+    /// Bring all stylised hair (tufts, caps, buns, rings) within this many triangles, less first where it shows least
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub triangles: Option<u32>,
     /// Print one JSON object on standard output: counts per part, times per stage, files

@@ -39,11 +39,18 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
     if let Some(budget) = &report.budget {
         let (before, after) = (grouped(budget.before), grouped(budget.after));
         let _ = match budget.tolerance {
-            Some(tolerance) => writeln!(
-                out,
-                "{:>8}  {before} triangles became {after}: {} of {} tufts, by {tolerance:.3} cm at most",
-                "budget", budget.lowered, budget.tufts
-            ),
+            Some(tolerance) => {
+                let also = match budget.pieces {
+                    0 => String::new(),
+                    1 => " and a cap, bun or ring".to_owned(),
+                    n => format!(" and {n} caps, buns and rings"),
+                };
+                writeln!(
+                    out,
+                    "{:>8}  {before} triangles became {after}: {} of {} tufts{also}, by {tolerance:.3} cm at most",
+                    "budget", budget.lowered, budget.tufts
+                )
+            }
             None => writeln!(out, "{:>8}  {before} triangles are within it", "budget"),
         };
     }
@@ -96,7 +103,7 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "calls": calls,
         "files": files,
         "budget": report.budget.map(|b| json!({
-            "before": b.before, "after": b.after, "lowered": b.lowered, "tufts": b.tufts, "tolerance_cm": b.tolerance,
+            "before": b.before, "after": b.after, "lowered": b.lowered, "tufts": b.tufts, "pieces": b.pieces, "tolerance_cm": b.tolerance,
         })),
         "warnings": report.outcome.diagnostics.len(),
     });

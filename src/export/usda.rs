@@ -73,7 +73,7 @@ pub fn usda(scene: &Scene, options: &UsdaOptions, task: &Task) -> Result<Vec<u8>
             Body::Mesh(mesh, look) => {
                 mesh.validate().map_err(|error| ExportError::Mesh { part: part.name.clone(), error })?;
                 out.mesh(&name, part, &with_normals(mesh), None, &binding, task)?;
-                materials.push((name, surface(look)));
+                materials.push(Material { name, inputs: surface(look), fallback: None });
             }
             Body::Locks(locks) => {
                 let mesh = &locks.mesh.mesh;
@@ -82,7 +82,8 @@ pub fn usda(scene: &Scene, options: &UsdaOptions, task: &Task) -> Result<Vec<u8>
                 let colours: Vec<Vec3> = (0..mesh.positions.len()).map(colour).collect();
                 out.mesh(&name, part, &with_normals(mesh), Some(&colours), &binding, task)?;
                 let first = locks.look(0);
-                materials.push((name, surface(&MeshMaterial { colour: first.colour, roughness: first.roughness })));
+                let look = MeshMaterial { colour: first.colour, roughness: first.roughness };
+                materials.push(Material { name, inputs: surface(&look), fallback: Some(look.colour.to_linear()) });
             }
             Body::Hair(hair) => {
                 check_hair(part, hair)?;
@@ -93,13 +94,22 @@ pub fn usda(scene: &Scene, options: &UsdaOptions, task: &Task) -> Result<Vec<u8>
                     let name = names.take(&format!("{name}_guides"));
                     out.curves(&name, part, (&hair.guides, &blocks, &hair.material), true, &binding, task)?;
                 }
-                materials.push((name, strand(hair)));
+                materials.push(Material { name, inputs: strand(hair), fallback: None });
             }
         }
     }
     out.materials(&root, &looks, &materials)?;
     out.line(0, "}")?;
     Ok(out.bytes)
+}
+
+/// A material of the file.
+struct Material {
+    name: String,
+    /// Inputs of its `UsdPreviewSurface`.
+    inputs: String,
+    /// The colour where there is no `displayColor`, for a material that takes its colour from there.
+    fallback: Option<Vec3>,
 }
 
 /// Inputs of a `UsdPreviewSurface`.
@@ -311,14 +321,39 @@ impl Writer {
         self.line(1, "}")
     }
 
-    fn materials(&mut self, root: &str, looks: &str, materials: &[(String, String)]) -> Result<(), ExportError> {
+    fn materials(&mut self, root: &str, looks: &str, materials: &[Material]) -> Result<(), ExportError> {
         self.line(1, &format!("\ndef Scope \"{looks}\"\n{{"))?;
-        for (name, inputs) in materials {
+        for Material { name, inputs, fallback } in materials {
             self.line(2, &format!("def Material \"{name}\"\n{{"))?;
-            let surface = format!("</{root}/{looks}/{name}/Surface.outputs:surface>");
+            let path = format!("{root}/{looks}/{name}");
+            let surface = format!("</{path}/Surface.outputs:surface>");
             self.line(3, &format!("token outputs:surface.connect = {surface}\n\ndef Shader \"Surface\"\n{{"))?;
+            let inputs = match fallback {
+                Some(_) => inputs
+                    .lines()
+                    .map(|line| match line.starts_with("color3f inputs:diffuseColor") {
+                        true => format!("color3f inputs:diffuseColor.connect = </{path}/Colour.outputs:result>"),
+                        false => line.to_owned(),
+                    })
+                    .collect::<Vec<_>>()
+                    .join("\n"),
+                None => inputs.clone(),
+            };
             self.line(4, &format!("uniform token info:id = \"UsdPreviewSurface\"\n{inputs}\ntoken outputs:surface"))?;
             self.line(3, "}")?;
+            if let Some(colour) = fallback {
+                // Each tuft has its own colour, from root to tip.
+                self.line(3, "\ndef Shader \"Colour\"\n{")?;
+                let fallback = text::of(&colour.to_array());
+                self.line(
+                    4,
+                    &format!(
+                        "uniform token info:id = \"UsdPrimvarReader_float3\"\nfloat3 inputs:fallback = {fallback}\n\
+                         string inputs:varname = \"displayColor\"\nfloat3 outputs:result"
+                    ),
+                )?;
+                self.line(3, "}")?;
+            }
             self.line(2, "}")?;
         }
         self.line(1, "}")

@@ -139,7 +139,7 @@ impl Bvh {
             look(slot, &mut best, &mut found);
         }
         let mut limit = with_rounding(best);
-        let mut stack = [(0_u32, 0.0_f32); 128];
+        let mut stack = [(0_u32, 0.0_f32); 48];
         let mut depth = 1;
         stack[0] = (0, box_distance(&self.tree, 0, p));
         // A tree deeper than the stack (many coinciding triangles) goes on in a heap.

@@ -136,8 +136,15 @@ impl Clear<'_> {
                 // The deepest of a few places between the ends says how far both have to go.
                 let mut deepest = near;
                 for u in [0.2, 0.4, 0.6, 0.8] {
-                    let s = solid.closest(a.lerp(b, u));
-                    if s.distance < deepest.distance {
+                    let p = a.lerp(b, u);
+                    let around = solid.around(p);
+                    // Only what may be deeper has to be asked for.
+                    if around.clearance.max(0.0) >= deepest.distance && around.clearance > 0.0 {
+                        continue;
+                    }
+                    if let Some(s) = solid.closest_around(p, &around, f32::MAX.sqrt())
+                        && s.distance < deepest.distance
+                    {
                         deepest = s;
                     }
                 }

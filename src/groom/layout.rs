@@ -31,6 +31,9 @@ pub fn offsets(counts: impl Iterator<Item = usize>) -> Vec<u32> {
 
 /// Calls `write(scratch, strand, nodes, stages)` for every strand, in parallel; stops early when the task is cancelled
 /// and reports progress as `what`.
+///
+/// Strands whose roots are neighbours follow each other, for they ask for the same guides and the same part of the head:
+/// in the order of their numbers, which is all over the head, most of the time would go into fetching these anew.
 pub fn write_all<S: Send>(
     strands: &mut Strands,
     task: &Task,
@@ -45,14 +48,21 @@ pub fn write_all<S: Send>(
     let n = strands.count();
     let points = split(&mut strands.points, &strands.offsets);
     let stages = split(&mut strands.stage, &strands.offsets);
-    let mut work: Vec<(&mut [Vec3], &mut [u8])> = points.into_iter().zip(stages).collect();
+    let mut work: Vec<(u32, usize, &mut [Vec3], &mut [u8])> = points
+        .into_iter()
+        .zip(stages)
+        .zip(&strands.roots)
+        .enumerate()
+        .map(|(i, ((points, stages), root))| (along_the_surface(root.position), i, points, stages))
+        .collect();
+    work.par_sort_unstable_by_key(|w| (w.0, w.1));
     let done = std::sync::atomic::AtomicUsize::new(0);
-    work.par_chunks_mut(PIECE).enumerate().for_each_init(scratch, |scratch, (piece, strands)| {
+    work.par_chunks_mut(PIECE).for_each_init(scratch, |scratch, strands| {
         if task.is_cancelled() {
             return;
         }
-        for (k, (points, stages)) in strands.iter_mut().enumerate() {
-            write(scratch, piece * PIECE + k, points, stages);
+        for (_, i, points, stages) in strands.iter_mut() {
+            write(scratch, *i, points, stages);
         }
         let pieces = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
         if pieces.is_multiple_of(REPORT) {
@@ -60,6 +70,17 @@ pub fn write_all<S: Send>(
         }
     });
     task.check()
+}
+
+/// The place of a point on a curve through all of space that keeps neighbours together (Morton 1966): ten bits of each
+/// coordinate in turn, in steps of an eighth of a centimetre.
+fn along_the_surface(p: Vec3) -> u32 {
+    // Beyond 64 cm all are neighbours; a coordinate that is none counts as the least.
+    let spread = |c: f32| {
+        let n = ((c + 64.0) * 8.0).clamp(0.0, 1023.0) as u32;
+        (0..10).fold(0, |all, bit| all | (n >> bit & 1) << (3 * bit))
+    };
+    spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2
 }
 
 /// Keeps the first `counts[i]` nodes of every strand; a strand of fewer than two nodes goes altogether. `guide` is left

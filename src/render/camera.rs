@@ -40,6 +40,16 @@ impl Camera {
         )
     }
 
+    /// [`project`](Self::project) as three rows of an affine matrix: x, y and depth are the products with (p, 1).
+    pub fn rows(&self) -> [[f32; 4]; 3] {
+        let row = |axis: Vec3, offset: f32| [axis.x, axis.y, axis.z, offset - axis.dot(self.centre)];
+        [
+            row(self.right * self.scale, self.width as f32 * 0.5),
+            row(-self.up * self.scale, self.height as f32 * 0.5),
+            row(self.toward, 0.0),
+        ]
+    }
+
     /// The point that projects to these pixels and this depth.
     pub fn unproject(&self, at: Vec3) -> Vec3 {
         let x = (at.x - self.width as f32 * 0.5) / self.scale;
@@ -128,46 +138,79 @@ impl Framing {
 /// Landmarks are not part of a scene, so "head" is what lies above 1.5 times the height of the vertex over the origin
 /// (the middle between the ears), measured downward: that is a hand's breadth under the chin.
 pub fn frame(scene: &Scene, views: &[Mat3]) -> Framing {
-    let mut points: Vec<Vec3> = Vec::new();
+    let mut few: Vec<Vec3> = Vec::new();
+    let mut many: Vec<&[Vec3]> = Vec::new();
     for part in &scene.parts {
         match &part.body {
             Body::Mesh(mesh, _) => {
                 let top = mesh.positions.iter().filter(|p| p.is_finite()).map(|p| p.y).fold(0.0, f32::max);
                 let (floor, neck) = (-1.5 * top, -0.9 * top);
-                let kept = |p: &&Vec3| p.is_finite() && (top <= 0.0 || p.y >= neck);
-                points.extend(mesh.positions.iter().filter(kept));
+                few.extend(mesh.positions.iter().filter(|p| top <= 0.0 || p.y >= neck));
                 // The cut through the bust counts for the height alone.
                 let low = mesh.positions.iter().map(|p| p.y).filter(|y| y.is_finite()).fold(f32::INFINITY, f32::min);
                 if low.is_finite() && top > 0.0 {
-                    points.push(Vec3::new(0.0, low.max(floor), 0.0));
+                    few.push(Vec3::new(0.0, low.max(floor), 0.0));
                 }
             }
-            Body::Locks(locks) => points.extend(locks.mesh.mesh.positions.iter().filter(|p| p.is_finite())),
+            Body::Locks(locks) => many.push(&locks.mesh.mesh.positions),
             Body::Hair(hair) => {
                 let shown = if scene.look.debug { &hair.guides } else { &hair.strands };
-                points.extend(shown.points.iter().filter(|p| p.is_finite()));
+                many.push(&shown.points);
                 if scene.look.debug {
-                    points.extend(hair.overlay.lines.iter().flat_map(|l| &l.points).filter(|p| p.is_finite()));
+                    many.extend(hair.overlay.lines.iter().map(|l| l.points.as_slice()));
                 }
             }
         }
     }
-    if points.is_empty() {
-        points.extend([Vec3::splat(-10.0), Vec3::splat(10.0)]);
+    many.push(&few);
+    let turns: Vec<Mat3> = views.iter().map(Mat3::transpose).collect();
+    let none = || vec![Bounds::EMPTY; views.len()];
+    let union = |a: Vec<Bounds>, b: Vec<Bounds>| a.into_iter().zip(b).map(|(a, b)| a.union(b)).collect();
+    let mut bounds = many
+        .par_iter()
+        .flat_map(|points| points.par_chunks(1 << 12))
+        .map(|some| turns.iter().map(|&turn| extent(some, turn)).collect())
+        .reduce(none, union);
+    if bounds.iter().any(|b| b.is_empty()) {
+        bounds.fill(Bounds::of([Vec3::splat(-10.0), Vec3::splat(10.0)]));
     }
-    let mut size = Vec2::splat(1e-3);
-    let centres = views
-        .iter()
-        .map(|&turn| {
-            let b = points
-                .par_chunks(1 << 14)
-                .map(|some| Bounds::of(some.iter().map(|&p| turn.transpose() * p)))
-                .reduce(|| Bounds::EMPTY, Bounds::union);
-            size = size.max(b.size().truncate());
-            turn * b.centre()
-        })
-        .collect();
+    let size = bounds.iter().fold(Vec2::splat(1e-3), |size, b| size.max(b.size().truncate()));
+    let centres = views.iter().zip(&bounds).map(|(&turn, b)| turn * b.centre()).collect();
     Framing { centres, size }
+}
+
+/// Bounds of the turned points; those that are not finite do not count.
+fn extent(points: &[Vec3], turn: Mat3) -> Bounds {
+    let (lo, hi) = corners(points, turn.to_cols_array());
+    let bounds = Bounds { min: Vec3::from(lo), max: Vec3::from(hi) };
+    if bounds.min.is_finite() && bounds.max.is_finite() {
+        return bounds;
+    }
+    Bounds::of(points.iter().filter(|p| p.is_finite()).map(|&p| turn * p))
+}
+
+/// Least and greatest coordinates after the turn `m` (by columns): many at a time, without a branch.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn corners(points: &[Vec3], m: [f32; 9]) -> ([f32; 3], [f32; 3]) {
+    const LANES: usize = 8;
+    let (mut lo, mut hi) = ([[f32::INFINITY; LANES]; 3], [[f32::NEG_INFINITY; LANES]; 3]);
+    let mut add = |p: Vec3, lane: usize| {
+        for k in 0..3 {
+            let v = p.x * m[k] + p.y * m[k + 3] + p.z * m[k + 6];
+            lo[k][lane] = if v < lo[k][lane] { v } else { lo[k][lane] };
+            hi[k][lane] = if v > hi[k][lane] { v } else { hi[k][lane] };
+        }
+    };
+    let mut rows = points.chunks_exact(LANES);
+    for row in &mut rows {
+        for (lane, &p) in row.iter().enumerate() {
+            add(p, lane);
+        }
+    }
+    rows.remainder().iter().for_each(|&p| add(p, 0));
+    let least = |lanes: [f32; LANES]| lanes.into_iter().fold(f32::INFINITY, f32::min);
+    let greatest = |lanes: [f32; LANES]| lanes.into_iter().fold(f32::NEG_INFINITY, f32::max);
+    (lo.map(least), hi.map(greatest))
 }
 
 #[cfg(test)]
@@ -186,6 +229,22 @@ mod tests {
         assert!(axes(View::Right).x_axis.dot(Vec3::Z) > 0.99);
         assert!(axes(View::Top).y_axis.dot(Vec3::Z) < -0.99);
         assert!(axes(View::Back).x_axis.dot(Vec3::X) < -0.99);
+    }
+
+    #[test]
+    fn the_extent_is_that_of_every_point() {
+        let key = crate::math::rng::Key::new(1, "extent");
+        for n in [0, 1, 7, 8, 9, 100] {
+            let mut points: Vec<Vec3> = (0..n).map(|i| key.with(i).gaussian3()).collect();
+            let turn = axes(View::ThreeQuarter).transpose();
+            let want = Bounds::of(points.iter().map(|&p| turn * p));
+            for odd in [Vec3::splat(f32::NAN), Vec3::new(f32::INFINITY, 0.0, 0.0)] {
+                let got = extent(&points, turn);
+                assert_eq!(got.is_empty(), n == 0);
+                assert!(n == 0 || (got.min.abs_diff_eq(want.min, 1e-5) && got.max.abs_diff_eq(want.max, 1e-5)), "{n}");
+                points.insert(0, odd);
+            }
+        }
     }
 
     #[test]
@@ -215,6 +274,8 @@ mod tests {
         assert_eq!(camera.project(Vec3::new(1.0, 2.0, 3.0)), Vec3::new(100.0, 50.0, 0.0));
         assert_eq!(camera.project(Vec3::new(2.0, 3.0, 5.0)), Vec3::new(110.0, 40.0, 2.0));
         let p = Vec3::new(0.5, -3.0, 7.0);
+        let rows = camera.rows().map(|r| Vec3::from_slice(&r[..3]).dot(p) + r[3]);
+        assert!(Vec3::from(rows).distance(camera.project(p)) < 1e-4);
         assert!(camera.unproject(camera.project(p)).distance(p) < 1e-5);
         assert_eq!(camera.enlarged(2).project(Vec3::new(2.0, 3.0, 5.0)), Vec3::new(220.0, 80.0, 2.0));
     }

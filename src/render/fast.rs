@@ -6,24 +6,30 @@ use glam::Vec3;
 
 use crate::math::Colour;
 
-/// e to the power of `x` with a relative error under 2e-5; 0 below -87.
+/// Added to a number of moderate size, it leaves no room for a fraction: the whole part stands in the lowest bits.
+const WHOLE: f32 = 12_582_912.0;
+
+/// e to the power of `x` with a relative error under 2e-5, for `x` between -87 and 88; what is beyond counts as that.
+#[inline(always)]
 pub fn exp(x: f32) -> f32 {
-    if x < -87.0 {
-        return 0.0;
-    }
-    let y = x.min(88.0) * std::f32::consts::LOG2_E;
-    // `floor` would be a call where the processor at hand is not known to have the instruction.
-    let whole = (y + 128.0) as i32 - 128;
-    let f = (y - whole as f32) * std::f32::consts::LN_2;
-    // Taylor's series about 0, over 0..ln 2.
-    let p = 1.0 + f * (1.0 + f * (1.0 / 2.0 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f / 720.0)))));
-    p * f32::from_bits(((whole + 127) << 23) as u32)
+    let y = x.clamp(-87.0, 88.0) * std::f32::consts::LOG2_E;
+    let whole = y + WHOLE;
+    let f = (y - (whole - WHOLE)) * std::f32::consts::LN_2;
+    // Taylor's series about 0, over half of ln 2 on either side.
+    let p = 1.0 + f * (1.0 + f * (1.0 / 2.0 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f / 120.0))));
+    p * f32::from_bits((whole.to_bits() << 23).wrapping_add(127 << 23))
 }
 
-/// The least whole number not under `x`, which is at least 0; 0 for NaN and below.
+/// The whole part of `x` between 0 and 4 million, or one less when `x` is whole: without a branch, for vectors.
+#[inline(always)]
+pub fn floor(x: f32) -> u32 {
+    (x - 0.5 + WHOLE).to_bits() & 0x3f_ffff
+}
+
+/// The least whole number not under `x`, which is at least 0; 0 for NaN and below. Up to 2 thousand million.
 pub fn ceil(x: f32) -> usize {
-    let whole = x as usize;
-    whole + usize::from((whole as f32) < x)
+    let whole = x as i32;
+    (whole + i32::from((whole as f32) < x)).max(0) as usize
 }
 
 /// sRGB bytes of 4096 linear values 0..=1, denser towards black: index is the square root.
@@ -38,7 +44,9 @@ static ENCODE: LazyLock<Vec<u8>> = LazyLock::new(|| {
 
 /// sRGB bytes of a linear colour, clamped to 0..=1; NaN becomes 0.
 pub fn encode(linear: Vec3) -> [u8; 3] {
-    linear.to_array().map(|c| ENCODE[(c.clamp(0.0, 1.0).sqrt() * 4095.0 + 0.5) as usize])
+    let table: &[u8] = &ENCODE;
+    let byte = |c: f32| table[(c.clamp(0.0, 1.0).sqrt() * 4095.0 + 0.5) as usize];
+    [byte(linear.x), byte(linear.y), byte(linear.z)]
 }
 
 #[cfg(test)]
@@ -52,7 +60,16 @@ mod tests {
             let (got, want) = (exp(x), crate::math::trig::exp(x));
             assert!((got - want).abs() <= 4e-5 * want, "{x}: {got} {want}");
         }
-        assert_eq!(exp(-1e9), 0.0);
+        assert!(exp(-1e9) < 1e-37 && exp(1e9).is_finite());
+    }
+
+    #[test]
+    fn rounding_down() {
+        for i in 0..4000 {
+            let (x, n) = (i as f32 * 0.37 + 0.01, (i as f32 * 0.37 + 0.01) as u32);
+            assert!(floor(x) == n || (floor(x) + 1 == n && x.fract() < 1e-3), "{x}: {}", floor(x));
+        }
+        assert_eq!((floor(0.0), floor(0.3), floor(3_999_998.5)), (0, 0, 3_999_998));
     }
 
     #[test]

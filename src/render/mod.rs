@@ -21,7 +21,9 @@ pub mod sheet;
 pub mod strands;
 pub mod strip;
 pub mod surface;
+pub mod tiles;
 pub mod toon;
+pub mod veil;
 
 #[cfg(test)]
 mod tests;

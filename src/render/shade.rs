@@ -56,6 +56,32 @@ const KEY: usize = 0;
 /// The lamp that casts no shadow of its own.
 const FILL: usize = 1;
 
+/// A lamp that stands lower than this over a surface (cosine) does not light it.
+const UNLIT: f32 = -0.34;
+
+/// How much light reaches a place on a surface, each from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Of the sky.
+    open: f32,
+    /// Of each lamp, through hair.
+    hair: [f32; LAMPS.len()],
+    /// Of the lamp that casts the head's shadow, past the head.
+    head: f32,
+}
+
+impl Reach {
+    /// No light at all.
+    pub const NONE: Self = Self { open: 0.0, hair: [0.0; LAMPS.len()], head: 0.0 };
+
+    /// The sum with a part of another.
+    #[must_use]
+    pub fn plus(self, other: &Self, part: f32) -> Self {
+        let hair = std::array::from_fn(|i| self.hair[i] + other.hair[i] * part);
+        Self { open: self.open + other.open * part, hair, head: self.head + other.head * part }
+    }
+}
+
 /// How much of the sky reaches each place; the same for all views.
 #[derive(Clone, Debug)]
 pub struct Sky {
@@ -94,67 +120,48 @@ impl<'a> Studio<'a> {
         Self { lamps, lights, sky, toward: camera.toward, up: camera.up }
     }
 
-    /// Linear colour of hair at `p` with the unit tangent `t` (root to tip), as the viewer sees it.
-    pub fn hair(&self, coat: &Coat, strand: &StrandLook, p: Vec3, t: Vec3, along: f32) -> Vec3 {
-        let albedo = (coat.root + (coat.tip - coat.root) * along) * strand.tint;
-        let v = self.toward;
-        let tv = t.dot(v);
-        let across = (v - t * tv).normalize_or_zero();
-        let reaches = self.lights.sample(p).to_array();
-        let open = reaches[0];
-        // Light that went through hair took on its colour; blond scatters more of it on than black.
-        let pass = Vec3::ONE - (albedo.map(f32::sqrt) * 0.75).min(Vec3::splat(0.62));
-        let deep = |reach: f32| {
-            // reach^pass, between reach^1 and reach^(1/4).
-            let quarter = reach.max(0.0).sqrt().sqrt();
-            Vec3::splat(quarter) + (Vec3::splat(reach) - Vec3::splat(quarter)) * ((pass - 0.25) / 0.75).max(Vec3::ZERO)
-        };
-        let mut sum = albedo * deep(open) * SKY * (0.75 + 0.25 * across.dot(self.up));
-        let glow = albedo.map(f32::sqrt);
-        for lamp in &self.lamps {
-            let l = lamp.toward;
-            let tl = t.dot(l);
-            let reach = reaches[lamp.reach];
-            let light = lamp.colour;
-            let sin_tl = (1.0 - tl * tl).max(0.0).sqrt();
-            let facing = 0.5 + 0.5 * across.dot(l);
-            sum += albedo * deep(reach) * light * (sin_tl * (0.10 + 0.70 * facing));
-            if coat.shine <= 0.0 || reach < 0.004 {
-                continue;
+    /// Colours the first `count` of `lanes`, hair with this coat, as the viewer sees it.
+    pub fn hair(&self, coat: &Coat, lanes: &mut Lanes, count: usize) {
+        for lane in 0..count {
+            let reach = self.lights.sample(Vec3::new(lanes.point[0][lane], lanes.point[1][lane], lanes.point[2][lane]));
+            for (k, reach) in reach.to_array().into_iter().enumerate() {
+                lanes.reach[k][lane] = reach;
             }
-            // Azimuth between lamp and viewer about the strand.
-            let cos_phi = (l - t * tl).normalize_or_zero().dot(across);
-            let half = (0.5 + 0.5 * cos_phi).max(0.0).sqrt();
-            let lobe = |shift: f32, width: f32| {
-                let x = (tl + tv - shift - strand.shift) / width;
-                fast::exp(-0.5 * x * x)
-            };
-            let primary = lobe(0.09, coat.width) * half * 0.30;
-            let secondary = lobe(-0.14, 1.7 * coat.width) * half * half * 0.30;
-            let through = lobe(0.0, 2.4 * coat.width) * fast::exp(-3.65 * cos_phi - 3.98) * 0.9;
-            let shine = Vec3::splat(primary * strand.glint) + glow * secondary * strand.glint + glow * albedo * through;
-            sum += shine * light * (coat.shine * reach);
         }
-        shoulder(sum)
+        let lamps = std::array::from_fn(|i| {
+            let lamp = &self.lamps[i];
+            (lamp.toward.to_array(), lamp.colour.to_array(), lamp.reach)
+        });
+        answer(&lamps, self.toward.to_array(), self.up.to_array(), coat.shine, coat.width, lanes);
     }
 
-    /// Linear colour of a surface at `p` with the unit normal `n` turned to the viewer.
-    pub fn surface(&self, material: &Skin, p: Vec3, n: Vec3) -> Vec3 {
+    /// How much light reaches a surface at `p` with the unit normal `n` turned to the viewer.
+    pub fn reach(&self, p: Vec3, n: Vec3) -> Reach {
         let open = self.sky.skin.sample_sky(p + n * (0.8 * self.sky.skin.cell()));
+        let mut reach = Reach { open, hair: [open; LAMPS.len()], head: 1.0 };
+        for (lamp, hair) in self.lamps.iter().zip(&mut reach.hair) {
+            if let Some(grid) = &lamp.skin {
+                *hair = grid.sample_toward(p + (n + lamp.toward) * (0.5 * grid.cell()), lamp.toward);
+            }
+            if let (Some(head), true) = (&lamp.head, n.dot(lamp.toward) > UNLIT) {
+                reach.head = head.sample(p + n * 0.1);
+            }
+        }
+        reach
+    }
+
+    /// Linear colour of a surface with the unit normal `n` turned to the viewer.
+    pub fn surface(&self, material: &Skin, n: Vec3, light: &Reach) -> Vec3 {
         // Light that hair and skin throw at each other keeps a face readable between curtains of hair.
-        let open = 0.16 + 0.24 * open.max(0.0).sqrt() + 0.60 * open;
+        let open = 0.16 + 0.24 * light.open.max(0.0).sqrt() + 0.60 * light.open;
         let mut sum = material.albedo * SKY * (open * (0.66 + 0.30 * n.dot(self.up)));
         // Light that bounced inside the skin comes out redder and past the edge of the shadow.
         let wrap = Vec3::new(0.34, 0.20, 0.14);
-        for lamp in &self.lamps {
+        for (lamp, hair) in self.lamps.iter().zip(light.hair) {
             let nl = n.dot(lamp.toward);
-            let hair = match &lamp.skin {
-                Some(grid) => grid.sample_toward(p + (n + lamp.toward) * (0.5 * grid.cell()), lamp.toward),
-                None => open,
-            };
-            let hair = 0.14 + 0.86 * hair;
-            let lit = nl > -0.34;
-            let reach = if !lit { 0.0 } else { hair * lamp.head.as_ref().map_or(1.0, |head| head.sample(p + n * 0.1)) };
+            let hair = 0.14 + 0.86 * if lamp.skin.is_some() { hair } else { open };
+            let head = if lamp.head.is_some() { light.head } else { 1.0 };
+            let reach = if nl > UNLIT { hair * head } else { 0.0 };
             let soft = ((Vec3::splat(nl) + wrap) / (Vec3::ONE + wrap)).max(Vec3::ZERO);
             let reach_rgb = Vec3::new(reach.max(0.0).sqrt() * 0.35 + reach * 0.65, reach, reach);
             sum += material.albedo * lamp.colour * soft * soft.map(f32::sqrt) * reach_rgb * 0.60;
@@ -168,9 +175,128 @@ impl<'a> Studio<'a> {
     }
 }
 
+/// Pieces of strands that are shaded side by side, each number of theirs apart, so that one instruction serves many.
+#[derive(Clone, Debug)]
+pub struct Lanes {
+    /// Where, cm.
+    point: [[f32; Self::COUNT]; 3],
+    /// Unit tangent from root to tip.
+    tangent: [[f32; Self::COUNT]; 3],
+    albedo: [[f32; Self::COUNT]; 3],
+    shift: [f32; Self::COUNT],
+    glint: [f32; Self::COUNT],
+    /// What [`Lights`] says of the place.
+    reach: [[f32; Self::COUNT]; 4],
+    /// Linear.
+    colour: [[f32; Self::COUNT]; 3],
+}
+
+impl Default for Lanes {
+    fn default() -> Self {
+        let (zero, zero3) = ([0.0; Self::COUNT], [[0.0; Self::COUNT]; 3]);
+        let reach = [zero; 4];
+        Self { point: zero3, tangent: zero3, albedo: zero3, shift: zero, glint: zero, reach, colour: zero3 }
+    }
+}
+
+impl Lanes {
+    /// How many there are.
+    pub const COUNT: usize = 16;
+
+    /// Puts a piece of `strand` into a lane: its place, its unit tangent (root to tip), how far along it is.
+    pub fn set(&mut self, lane: usize, point: Vec3, tangent: Vec3, coat: &Coat, strand: &StrandLook, along: f32) {
+        let albedo = (coat.root + (coat.tip - coat.root) * along) * strand.tint;
+        for k in 0..3 {
+            self.point[k][lane] = point[k];
+            self.tangent[k][lane] = tangent[k];
+            self.albedo[k][lane] = albedo[k];
+        }
+        self.shift[lane] = strand.shift;
+        self.glint[lane] = strand.glint;
+    }
+
+    /// The linear colour of a lane.
+    pub fn colour(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.colour[0][lane], self.colour[1][lane], self.colour[2][lane])
+    }
+}
+
+/// Direction to a lamp, its colour, and which of the reaches is its own.
+type Ray = ([f32; 3], [f32; 3], usize);
+
+/// Shades all lanes. Every loop over them is without branches, so that it becomes vector instructions.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn answer(lamps: &[Ray; LAMPS.len()], v: [f32; 3], up: [f32; 3], shine: f32, width: f32, lanes: &mut Lanes) {
+    const N: usize = Lanes::COUNT;
+    let Lanes { tangent: [tx, ty, tz], albedo, shift, glint, reach: reaches, colour, .. } = lanes;
+    let [primary, secondary, through] = [1.0, 1.7, 2.4].map(|wider| 1.0 / (wider * width));
+    let (mut tv, mut across, mut glow, mut mix) = ([0.0; N], [[0.0; N]; 3], [[0.0; N]; 3], [[0.0; N]; 3]);
+    for i in 0..N {
+        tv[i] = tx[i] * v[0] + ty[i] * v[1] + tz[i] * v[2];
+        // The strand's normal that faces the viewer.
+        let turn = 1.0 / (1.0 - tv[i] * tv[i]).max(1e-9).sqrt();
+        across[0][i] = (v[0] - tx[i] * tv[i]) * turn;
+        across[1][i] = (v[1] - ty[i] * tv[i]) * turn;
+        across[2][i] = (v[2] - tz[i] * tv[i]) * turn;
+    }
+    let open = &reaches[0];
+    for k in 0..3 {
+        let sky = SKY.to_array()[k];
+        for i in 0..N {
+            // Light that went through hair took on its colour; blond scatters more of it on than black. So what reaches
+            // a place is raised to a power between 1 and 1/4, here by the way between the two.
+            glow[k][i] = albedo[k][i].sqrt();
+            mix[k][i] = ((1.0 - (glow[k][i] * 0.75).min(0.62) - 0.25) * (1.0 / 0.75)).max(0.0);
+            let quarter = open[i].max(0.0).sqrt().sqrt();
+            let deep = quarter + (open[i] - quarter) * mix[k][i];
+            let above = across[0][i] * up[0] + across[1][i] * up[1] + across[2][i] * up[2];
+            colour[k][i] = albedo[k][i] * deep * sky * (0.75 + 0.25 * above);
+        }
+    }
+    for (l, light, reach) in lamps {
+        let reach = &reaches[*reach];
+        let (mut soft, mut plain, mut tinted, mut twice) = ([0.0; N], [0.0; N], [0.0; N], [0.0; N]);
+        let mut quarter = [0.0; N];
+        for i in 0..N {
+            let tl = tx[i] * l[0] + ty[i] * l[1] + tz[i] * l[2];
+            let sin_tl = (1.0 - tl * tl).max(0.0).sqrt();
+            let facing = across[0][i] * l[0] + across[1][i] * l[1] + across[2][i] * l[2];
+            soft[i] = sin_tl * (0.45 + 0.35 * facing);
+            quarter[i] = reach[i].max(0.0).sqrt().sqrt();
+            // Azimuth between lamp and viewer about the strand.
+            let cos_phi = facing / sin_tl.max(1e-4);
+            let half = (0.5 + 0.5 * cos_phi).max(0.0).sqrt();
+            let off = tl + tv[i] - shift[i];
+            let (a, b, c) = ((off - 0.09) * primary, (off + 0.14) * secondary, off * through);
+            let bright = 0.30 * shine * reach[i] * glint[i] * half;
+            plain[i] = fast::exp(-0.5 * a * a) * bright;
+            tinted[i] = fast::exp(-0.5 * b * b) * bright * half;
+            twice[i] = fast::exp(-0.5 * c * c - 3.65 * cos_phi - 3.98) * 0.9 * shine * reach[i];
+        }
+        for k in 0..3 {
+            for i in 0..N {
+                let deep = quarter[i] + (reach[i] - quarter[i]) * mix[k][i];
+                let highlight = plain[i] + glow[k][i] * (tinted[i] + albedo[k][i] * twice[i]);
+                colour[k][i] += light[k] * (albedo[k][i] * deep * soft[i] + highlight);
+            }
+        }
+    }
+    for channel in colour {
+        for c in channel {
+            *c = bend(*c);
+        }
+    }
+}
+
 /// Keeps values up to 0.6 and bends the rest softly below 1.
 fn shoulder(c: Vec3) -> Vec3 {
-    c.map(|x| if x <= 0.6 { x } else { 1.0 - 0.4 * fast::exp(-(x - 0.6) / 0.4) })
+    c.map(bend)
+}
+
+#[inline(always)]
+fn bend(x: f32) -> f32 {
+    let bent = 1.0 - 0.4 * fast::exp((0.6 - x) * 2.5);
+    if x <= 0.6 { x } else { bent }
 }
 
 /// A hair material, made ready.

@@ -241,6 +241,10 @@ pub fn density(hair: &[(&Strands, f32, f32)], meshes: &[&Mesh], task: &Task) -> 
     Ok(Density { coarse: whole.halved(), coarse_hair: grid.halved(), hair: grid, whole })
 }
 
+/// Nodes of strands that are enough to tell the density of hair: of more, every other strand or fewer are counted, each
+/// for all of its neighbours.
+const ENOUGH: usize = 600_000;
+
 /// Adds one group's strands: per segment width x length over the cell's volume, times pi/4 for the mean shadow of a
 /// cylinder over all directions.
 fn splat(
@@ -254,10 +258,16 @@ fn splat(
 ) -> Result<(), Cancelled> {
     let per_volume = std::f32::consts::FRAC_PI_4 / (grid.cell * grid.cell * grid.cell);
     let count = strands.count();
-    for (done, i) in (group * count / GROUPS..(group + 1) * count / GROUPS).enumerate() {
+    let step = (strands.points.len() / ENOUGH).clamp(1, 8);
+    let end = (group + 1) * count / GROUPS;
+    for (done, first) in (group * count / GROUPS..end).step_by(step).enumerate() {
         if done % 256 == 0 {
             task.check()?;
         }
+        // One of the next few, by chance, so that no order of the strands is mistaken for their places.
+        let few = step.min(end - first);
+        let i = first + (done.wrapping_mul(0x9e37_79b1) >> 12) % few;
+        let per_volume = per_volume * few as f32;
         let nodes = strands.strand(i);
         let last = (nodes.len() as f32 - 1.0).max(1.0);
         for (k, w) in nodes.windows(2).enumerate() {
@@ -278,40 +288,63 @@ fn splat(
     Ok(())
 }
 
+/// Light of a row of cells: the mean, by the fractions `f`, of two rows of the layer before; and what of it they let pass.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn pass(near: &[f32], far: &[f32], f: [f32; 2], stands: &[f32], path: f32, light: &mut [f32], out: &mut [f32]) {
+    let n = stands.len();
+    let (near, far, light, out) = (&near[..=n], &far[..=n], &mut light[..n], &mut out[..n]);
+    let (near1, far1) = (&near[1..=n], &far[1..=n]);
+    for j in 0..n {
+        let lo = near[j] * (1.0 - f[1]) + near1[j] * f[1];
+        let hi = far[j] * (1.0 - f[1]) + far1[j] * f[1];
+        light[j] = lo * (1.0 - f[0]) + hi * f[0];
+        out[j] = light[j] * fast::exp(-stands[j] * path);
+    }
+}
+
 /// The fraction of light from the direction `to_light` (a unit vector) that reaches each cell of `density`.
 pub fn transmittance(density: &Grid, to_light: Vec3) -> Grid {
     let n = density.size;
     let strides = [n[1] * n[2], n[2], 1];
     let l = to_light.to_array();
     let a = (0..3).max_by(|&i, &j| l[i].abs().total_cmp(&l[j].abs())).unwrap_or(1);
-    let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+    // Rows run along z, whose cells lie side by side, where they can.
+    let (b, c) = [(1, 2), (0, 2), (0, 1)][a];
     let steep = l[a].abs().max(1e-6);
     let (db, dc) = (l[b] / steep, l[c] / steep);
     let path = density.cell / steep;
     let (nb, nc) = (n[b], n[c]);
-    // What the layer before lets through, with a free border of one cell.
-    let mut before = vec![1.0_f32; (nb + 2) * (nc + 2)];
+    // What the layer before lets through, with a free border of one cell before and two behind.
+    let row = nc + 3;
+    let mut before = vec![1.0_f32; (nb + 3) * row];
     let mut out = before.clone();
     let mut values = vec![1.0_f32; density.values.len()];
+    let (mut stands, mut light) = (vec![0.0_f32; nc], vec![0.0_f32; nc]);
     // The offset is within -1..=1 cells: its whole part is -1, 0 or 1 and its fraction is the same for all cells.
     let (wb, wc) = (db.floor(), dc.floor());
     let (fb, fc) = (db - wb, dc - wc);
-    let clamp = |i: isize, n: usize| i.clamp(0, n as isize + 1) as usize;
+    let from = (1 + wc as isize) as usize;
     for layer in 0..n[a] {
         let k = if l[a] > 0.0 { n[a] - 1 - layer } else { layer };
         for i in 0..nb {
-            let i0 = clamp(i as isize + 1 + wb as isize, nb);
-            let i1 = clamp(i0 as isize + 1, nb);
-            let (row0, row1) = (i0 * (nc + 2), i1 * (nc + 2));
-            for j in 0..nc {
-                let j0 = clamp(j as isize + 1 + wc as isize, nc);
-                let j1 = clamp(j0 as isize + 1, nc);
-                let lo = before[row0 + j0] * (1.0 - fc) + before[row0 + j1] * fc;
-                let hi = before[row1 + j0] * (1.0 - fc) + before[row1 + j1] * fc;
-                let light = lo * (1.0 - fb) + hi * fb;
-                let cell = k * strides[a] + i * strides[b] + j * strides[c];
+            let above = (i as isize + 1 + wb as isize) as usize * row + from;
+            let start = k * strides[a] + i * strides[b];
+            let cells = (0..nc).map(|j| start + j * strides[c]);
+            for (stands, cell) in stands.iter_mut().zip(cells.clone()) {
+                *stands = density.values[cell];
+            }
+            let next = &mut out[(i + 1) * row + 1..][..nc];
+            pass(
+                &before[above..][..nc + 1],
+                &before[above + row..][..nc + 1],
+                [fb, fc],
+                &stands,
+                path,
+                &mut light,
+                next,
+            );
+            for (&light, cell) in light.iter().zip(cells) {
                 values[cell] = light;
-                out[(i + 1) * (nc + 2) + j + 1] = light * fast::exp(-density.values[cell] * path);
             }
         }
         std::mem::swap(&mut before, &mut out);

@@ -1,6 +1,9 @@
 //! The preview sheet: every view at one scale, with quiet lettering.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::{Mat3, Vec3};
+use rayon::prelude::*;
 use tiny_skia::{Paint, Pixmap, Rect, Transform};
 
 use crate::geometry::{Mesh, Strands};
@@ -16,7 +19,7 @@ use super::shade::{Coat, Skin, Sky, Studio};
 use super::shadow::{Density, density};
 use super::strands::{Bundle, Ink};
 use super::surface::{self, Shell};
-use super::toon::Toon;
+use super::toon::{self, Toon};
 
 /// An opaque picture, sRGB.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,14 +45,14 @@ pub struct SheetOptions {
     pub supersample: u32,
     /// Width of a drawn strand as a multiple of its own, 1 to 64: hair thinned out to one strand in eight looks as dense as
     /// the whole when each is drawn eight times as wide.
-    pub stroke: f32,
+    pub strand_width: f32,
     /// Names, figures and a scale bar around the views.
     pub lettering: bool,
 }
 
 impl Default for SheetOptions {
     fn default() -> Self {
-        Self { width: 640, height: 720, columns: None, supersample: 2, stroke: 1.0, lettering: true }
+        Self { width: 640, height: 720, columns: None, supersample: 2, strand_width: 1.0, lettering: true }
     }
 }
 
@@ -71,9 +74,9 @@ pub enum RenderError {
         /// Most allowed.
         most: u32,
     },
-    /// A stroke that is not between its limits.
-    #[error("a stroke of `{value}` is not between 1 and {MOST_STROKE}")]
-    Stroke {
+    /// A strand width that is not between its limits.
+    #[error("a strand width of `{value}` is not between 1 and {MOST_WIDTH}")]
+    StrandWidth {
         /// Its value.
         value: f32,
     },
@@ -89,11 +92,14 @@ pub enum RenderError {
     },
 }
 
+/// Height of the strip at the lower border that fades out, as a fraction of a view's.
+const FADE: f32 = 0.10;
+
 /// Most pixels of a sheet, in millions.
 pub(super) const MOST_PIXELS: u64 = 200;
 
 /// Largest multiple of a strand's width.
-const MOST_STROKE: f32 = 64.0;
+const MOST_WIDTH: f32 = 64.0;
 
 /// Where everything stands on the sheet, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,8 +132,8 @@ impl Layout {
                 return Err(RenderError::Size { what, value, least, most });
             }
         }
-        if !(1.0..=MOST_STROKE).contains(&options.stroke) {
-            return Err(RenderError::Stroke { value: options.stroke });
+        if !(1.0..=MOST_WIDTH).contains(&options.strand_width) {
+            return Err(RenderError::StrandWidth { value: options.strand_width });
         }
         let n = views.max(1) as u32;
         let columns = options.columns.unwrap_or(match n {
@@ -148,6 +154,18 @@ impl Layout {
         }
         let (width, height) = (width as u32, height as u32);
         Ok(Self { columns, rows, head, caption, foot, margin, letter, width, height })
+    }
+
+    /// Which rows of the sheet hold letters, when none are in the views of this height.
+    fn written(&self, views: Option<u32>) -> Vec<bool> {
+        let free = |y: u32| {
+            let row = y.checked_sub(self.head)?;
+            let height = views?;
+            Some(row < self.rows * (height + self.caption) && row % (height + self.caption) < height)
+        };
+        // A letter may reach a little into the view over it.
+        let near = |y: u32| (0..=2).any(|d| !free(y + d).unwrap_or(false));
+        (0..self.height).map(near).collect()
     }
 
     /// Upper left corner of view `i`.
@@ -184,18 +202,25 @@ pub fn sheet(scene: &Scene, options: &SheetOptions, task: &Task) -> Result<Pictu
     let layout = Layout::new(views.len(), options)?;
     let paper = paper(scene.look.background);
     task.progress("density", 0.0);
-    let stage = Stage::new(scene, options.stroke, task)?;
+    let stage = Stage::new(scene, options.strand_width, task)?;
     task.progress("framing", 0.0);
     let sights: Vec<Mat3> = views.iter().map(|&view| axes(view)).collect();
     let framing = frame(scene, &sights);
     let mut picture = blank(layout.width, layout.height, paper.paper);
+    let steps = Steps { task, done: AtomicUsize::new(0), all: STEPS * views.len() };
+    // Side by side, so that a view's last work fills what the next one leaves free.
+    let drawn: Result<Vec<_>, Cancelled> = sights
+        .par_iter()
+        .zip(&framing.centres)
+        .map(|(&sight, &centre)| {
+            let camera = camera(sight, centre, &framing, options);
+            let (pixels, words) = stage.view(scene, &camera, options, paper.paper, &steps)?;
+            Ok((camera, pixels, words))
+        })
+        .collect();
     let mut labels = Vec::new();
-    for (i, &sight) in sights.iter().enumerate() {
-        let camera = camera(sight, framing.centres[i], &framing, options);
-        let words = stage.view(scene, &camera, options, paper.paper, task).map(|(pixels, words)| {
-            paste(&mut picture, &pixels, layout.corner(i, options), options.width);
-            words
-        })?;
+    for (i, (camera, pixels, words)) in drawn?.into_iter().enumerate() {
+        paste(&mut picture, &pixels, layout.corner(i, options), options.width);
         labels.push((camera, words));
     }
     task.progress("lettering", 0.95);
@@ -221,15 +246,16 @@ pub fn views(
 ) -> Result<Vec<Picture>, RenderError> {
     Layout::new(sights.len(), &SheetOptions { lettering: false, columns: None, ..*options })?;
     let paper = paper(scene.look.background);
-    let stage = Stage::new(scene, options.stroke, task)?;
+    let stage = Stage::new(scene, options.strand_width, task)?;
     let own = if framing.is_none() { Some(frame(scene, sights)) } else { None };
     let Some(framing) = framing.or(own.as_ref()) else { return Ok(vec![]) };
+    let steps = Steps { task, done: AtomicUsize::new(0), all: STEPS * sights.len() };
     sights
-        .iter()
+        .par_iter()
         .zip(&framing.centres)
         .map(|(&sight, &centre)| {
             let camera = camera(sight, centre, framing, options);
-            let (pixels, _) = stage.view(scene, &camera, options, paper.paper, task)?;
+            let (pixels, _) = stage.view(scene, &camera, options, paper.paper, &steps)?;
             Ok(Picture { width: options.width, height: options.height, pixels })
         })
         .collect()
@@ -265,6 +291,25 @@ pub(super) fn paste(picture: &mut Picture, view: &[u8], (x, y): (u32, u32), widt
     }
 }
 
+/// How far the views of a sheet are, which are drawn at once.
+struct Steps<'a> {
+    task: &'a Task,
+    done: AtomicUsize,
+    all: usize,
+}
+
+/// Steps of one view: its light, its head, its hair.
+const STEPS: usize = 3;
+
+impl Steps<'_> {
+    /// Notes that a step of some view is done.
+    fn step(&self) -> Result<(), Cancelled> {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        self.task.progress("views", done as f32 / self.all.max(1) as f32);
+        self.task.check()
+    }
+}
+
 /// What all views of a scene share.
 struct Stage {
     meshes: Vec<(Mesh, Skin, Option<Vec<Vec3>>)>,
@@ -275,8 +320,14 @@ struct Stage {
 }
 
 impl Stage {
-    fn new(scene: &Scene, stroke: f32, task: &Task) -> Result<Self, Cancelled> {
+    fn new(scene: &Scene, strand_width: f32, task: &Task) -> Result<Self, Cancelled> {
         let mut meshes = Vec::new();
+        // Flat tones need neither shadows in hair nor a sky.
+        if scene.look.shading == Shading::Toon && !scene.look.debug {
+            let density = density(&[], &[], task)?;
+            let sky = Sky::new(&density, task)?;
+            return Ok(Self { meshes, density, sky, toon: Some(Toon::new(scene)) });
+        }
         for part in &scene.parts {
             if let Body::Mesh(mesh, material) = &part.body {
                 task.check()?;
@@ -295,17 +346,11 @@ impl Stage {
                 meshes.push((locks.mesh.mesh.clone(), skin, Some(tints)));
             }
         }
-        // Flat tones need neither shadows in hair nor a sky.
-        if scene.look.shading == Shading::Toon && !scene.look.debug {
-            let density = density(&[], &[], task)?;
-            let sky = Sky::new(&density, task)?;
-            return Ok(Self { meshes: vec![], density, sky, toon: Some(Toon::new(scene)) });
-        }
         let hair: Vec<(&Strands, f32, f32)> = scene
             .hair()
             .filter(|_| !scene.look.debug)
             .map(|(_, h)| {
-                let width = h.material.width * stroke;
+                let width = h.material.width * strand_width;
                 (&*h.strands, width, width * h.material.taper)
             })
             .collect();
@@ -322,21 +367,25 @@ impl Stage {
         camera: &Camera,
         options: &SheetOptions,
         paper: Colour,
-        task: &Task,
+        steps: &Steps,
     ) -> Result<(Vec<u8>, Vec<Label>), Cancelled> {
+        let task = steps.task;
         let ss = options.supersample as usize;
+        if let (Some(toon), None) = (&self.toon, scene.hair().next()) {
+            task.progress("surfaces", 0.2);
+            let paper = toon::Paper { background: paper.to_linear(), fade: FADE };
+            return Ok((toon.picture(camera, ss, paper, task)?, vec![]));
+        }
         let fine = camera.enlarged(ss);
         let meshes: Vec<&Mesh> = self.meshes.iter().map(|(mesh, ..)| mesh).collect();
-        task.progress("light", 0.0);
         let studio = Studio::new(&fine, &self.density, &meshes, &self.sky);
-        task.check()?;
+        steps.step()?;
         let shell = |(mesh, skin, tints): &'a (Mesh, Skin, Option<Vec<Vec3>>)| Shell {
             mesh,
             skin: *skin,
             tints: tints.as_deref(),
         };
         let shells: Vec<Shell> = self.meshes.iter().map(shell).collect();
-        task.progress("head", 0.2);
         let layer = match &self.toon {
             Some(toon) => toon.draw(&fine, ss, task)?,
             None => surface::draw(&shells, &fine, &studio, task)?,
@@ -345,7 +394,7 @@ impl Stage {
         let drawing = scene.look.debug.then(|| overlay::draw(scene, camera, pen));
         let mut bundles: Vec<Bundle> = match &drawing {
             Some(drawing) => drawing.wires.iter().map(|w| w.bundle(ss as f32)).collect(),
-            None => scene.hair().map(|(_, hair)| bundle(hair, fine.scale * options.stroke)).collect(),
+            None => scene.hair().map(|(_, hair)| bundle(hair, fine.scale * options.strand_width)).collect(),
         };
         let flat: Vec<Vec<Vec3>> = match &self.toon {
             Some(toon) => scene.hair().map(|(_, hair)| toon.strands(hair, &fine)).collect(),
@@ -361,10 +410,11 @@ impl Stage {
             layer: &layer,
             solid: if drawing.is_some() { 0.45 } else { 1.0 },
             background: paper.to_linear(),
-            fade: 0.10,
+            fade: FADE,
         };
-        task.progress("hair", 0.4);
+        steps.step()?;
         let pixels = raster::draw(&bundles, &canvas, task)?;
+        steps.step()?;
         Ok((pixels, drawing.map(|d| d.labels).unwrap_or_default()))
     }
 }
@@ -392,7 +442,12 @@ fn letter(
     paper: &Paper,
     labels: &[(Camera, Vec<Label>)],
 ) {
-    let Some(mut pixmap) = to_pixmap(picture) else { return };
+    let Some(mut pixmap) = Pixmap::new(picture.width, picture.height) else { return };
+    let shown = labels.iter().all(|(_, words)| words.is_empty()).then_some(options.height);
+    let written = layout.written(shown);
+    copy_rows(&mut picture.pixels, pixmap.data_mut(), &written, |rgb, rgba| {
+        rgba.copy_from_slice(&[rgb[0], rgb[1], rgb[2], 255]);
+    });
     let (w, h) = (layout.width as f32, layout.height as f32);
     let (size, margin) = (layout.letter, layout.margin as f32);
     let title = lettering::fitted(&scene.name, 1.5 * size, w - 2.0 * margin);
@@ -421,9 +476,18 @@ fn letter(
     if scene.look.debug {
         legend(&mut pixmap, scene, end + 2.5 * size, base, w - margin, size, paper.quiet);
     }
-    for (rgb, p) in picture.pixels.chunks_exact_mut(3).zip(pixmap.pixels()) {
-        rgb.copy_from_slice(&[p.red(), p.green(), p.blue()]);
-    }
+    copy_rows(&mut picture.pixels, pixmap.data_mut(), &written, |rgb, rgba| rgb.copy_from_slice(&rgba[..3]));
+}
+
+/// Calls `copy` for every pixel of some rows of a picture and of a pixmap.
+fn copy_rows(rgb: &mut [u8], rgba: &mut [u8], written: &[bool], copy: impl Fn(&mut [u8], &mut [u8]) + Sync) {
+    let width = rgb.len() / written.len().max(1) / 3;
+    let rows = rgb.par_chunks_exact_mut(3 * width.max(1)).zip(rgba.par_chunks_exact_mut(4 * width.max(1)));
+    rows.zip(written).filter(|(_, written)| **written).for_each(|((rgb, rgba), _)| {
+        for (rgb, rgba) in rgb.chunks_exact_mut(3).zip(rgba.chunks_exact_mut(4)) {
+            copy(rgb, rgba);
+        }
+    });
 }
 
 pub(super) fn to_pixmap(picture: &Picture) -> Option<Pixmap> {
@@ -482,8 +546,8 @@ fn figures(scene: &Scene) -> String {
     for (_, hair) in scene.hair() {
         let strands = if scene.look.debug { &hair.guides } else { &hair.strands };
         count += strands.count();
-        for i in 0..strands.count() {
-            let length = strands.length(i);
+        let lengths: Vec<f32> = (0..strands.count()).into_par_iter().map(|i| strands.length(i)).collect();
+        for length in lengths {
             total += f64::from(length);
             longest = longest.max(length);
         }

@@ -115,6 +115,8 @@ crate::params! {
         light: Option<Colour>;
         /// Colour of the outline, of toon shading; a very dark `colour` when left out.
         ink: Option<Colour>;
+        /// Number of flat tones of toon shading: 2 for light and shade, 3 for a darker one in the depth too.
+        tones: u32 = 2, range(2.0, 3.0);
         /// Width and strength of the light: 0 none, 1 much.
         shine: f32 = 0.5, range(0.0, 1.0);
         /// 0 mirror to 1 chalk, of soft shading and exported files.

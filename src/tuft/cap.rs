@@ -4,6 +4,7 @@
 //! triangle is refined by linear interpolation, and what lies inside the head is pushed out to its surface.
 
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
 use super::stroke::{SAME_POINT, closed_beziers, position};
 use super::{Ground, TuftError};
@@ -54,21 +55,29 @@ impl CapOptions {
             let third = |a: Vec3, b: Vec3| [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b];
             (0..sectors).map(|i| third(border[i], border[(i + 1) % sectors])).collect()
         };
+        let mut places = Vec::with_capacity(sectors * rows * (rows + 1) / 2);
+        for r in 1..=rows {
+            for s in 0..sectors {
+                places.extend((0..r).map(|j| (r, s, j)));
+            }
+        }
+        let found: Vec<Vec3> = places
+            .par_iter()
+            .with_min_len(32)
+            .map(|&(r, s, j)| {
+                let edge = position(&spans[s], j as f32 / r as f32);
+                if r == rows { ground.below(edge) } else { halved(crown, edge, r, rows, ground) }
+            })
+            .collect();
         let mut sheet = vec![crown];
         let mut uvs = vec![Vec2::splat(0.5)];
         let mut rims = vec![1.0_f32];
-        let fraction = |r: usize| r as f32 / rows as f32;
-        for r in 1..=rows {
-            for (s, span) in spans.iter().enumerate() {
-                for j in 0..r {
-                    let edge = position(span, j as f32 / r as f32);
-                    let place = if r == rows { ground.below(edge) } else { halved(crown, edge, r, rows, ground) };
-                    sheet.push(place);
-                    let angle = std::f32::consts::TAU * (s as f32 + j as f32 / r as f32) / sectors as f32;
-                    uvs.push(Vec2::splat(0.5) + 0.5 * fraction(r) * Vec2::new(trig::cos(angle), trig::sin(angle)));
-                    rims.push(((1.0 - fraction(r)) / self.rim).min(1.0));
-                }
-            }
+        for (&(r, s, j), place) in places.iter().zip(found) {
+            sheet.push(place);
+            let fraction = r as f32 / rows as f32;
+            let angle = std::f32::consts::TAU * (s as f32 + j as f32 / r as f32) / sectors as f32;
+            uvs.push(Vec2::splat(0.5) + 0.5 * fraction * Vec2::new(trig::cos(angle), trig::sin(angle)));
+            rims.push(((1.0 - fraction) / self.rim).min(1.0));
         }
         let triangles = fan(sectors, rows);
         Ok(Warned { value: self.shell(&sheet, &uvs, &rims, triangles, sectors * rows, ground), warnings })

@@ -5,8 +5,10 @@ use std::f32::consts::PI;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::simplify::Simplifier;
 use super::skin::{self, Surface};
-use super::{Section, TuftError, Tufts};
+use super::{Section, Tuft, TuftError, Tufts};
+use crate::geometry::Mesh;
 use crate::math::trig;
 
 /// How many rings and sides a tuft's mesh has.
@@ -253,43 +255,48 @@ fn stray(rows: &[Vec<Vec3>], keys: &mut [f32]) {
 pub struct Reduction {
     /// The tufts with their new detail.
     pub tufts: Tufts,
+    /// The other surfaces; none for those that stay as they are.
+    pub pieces: Vec<Option<Mesh>>,
     /// Triangles before.
     pub before: usize,
     /// Triangles now: at most the budget.
     pub after: usize,
-    /// No mesh strays farther from its true surface than this, cm, unless it did already; `None` when nothing had to
-    /// change.
+    /// No tuft strays farther from its true surface than this, cm, unless it did already, and no other surface farther
+    /// from what it was; `None` when nothing had to change.
     pub tolerance: Option<f32>,
     /// Indices of the tufts that lost triangles, with their counts before and after.
     pub lowered: Vec<(usize, usize, usize)>,
 }
 
-/// Brings all tufts together within `budget` triangles.
+/// Brings all tufts and all other closed surfaces (caps, buns, rings) together within `budget` triangles.
 ///
 /// One tolerance for all, the smallest that meets the budget: rings and sides go first where the surface changes least
-/// by it, on thin and straight tufts. A tuft that is coarser already stays as it is. The result depends on nothing but
-/// the tufts and the budget.
+/// by it, on thin and straight tufts; of other surfaces single vertices. A tuft that is coarser already stays as it is. The
+/// result depends on nothing but the surfaces and the budget.
 ///
 /// # Errors
 /// A budget that not even the coarsest meshes meet.
-pub fn reduce(tufts: &Tufts, budget: usize) -> Result<Reduction, TuftError> {
+pub fn reduce(tufts: &Tufts, pieces: &[&Mesh], budget: usize) -> Result<Reduction, TuftError> {
     struct Item {
         refinement: Refinement,
         now: usize,
     }
+    let planned = |tuft: &Tuft, surface: &Surface| {
+        Plan::new(surface, tuft.detail, tuft.stroke.points().len()).triangles(&tuft.section)
+    };
+    let now: Vec<usize> = tufts.tufts.par_iter().map(|tuft| planned(tuft, &tuft.surface())).collect();
+    let before = now.iter().sum::<usize>() + pieces.iter().map(|p| p.triangles.len()).sum::<usize>();
+    if before <= budget {
+        let (tufts, pieces) = (tufts.clone(), vec![None; pieces.len()]);
+        return Ok(Reduction { tufts, pieces, before, after: before, tolerance: None, lowered: Vec::new() });
+    }
     let items: Vec<Item> = tufts
         .tufts
         .par_iter()
-        .map(|tuft| {
-            let surface = tuft.surface();
-            let now = Plan::new(&surface, tuft.detail, tuft.stroke.points().len()).triangles(&tuft.section);
-            Item { refinement: Refinement::new(&surface), now }
-        })
+        .zip(now)
+        .map(|(tuft, now)| Item { refinement: Refinement::new(&tuft.surface()), now })
         .collect();
-    let before: usize = items.iter().map(|i| i.now).sum();
-    if before <= budget {
-        return Ok(Reduction { tufts: tufts.clone(), before, after: before, tolerance: None, lowered: Vec::new() });
-    }
+    let simpler: Vec<Simplifier> = pieces.par_iter().map(|piece| Simplifier::new(piece)).collect();
     let count = |tolerance: f32| -> Vec<usize> {
         items
             .par_iter()
@@ -297,7 +304,8 @@ pub fn reduce(tufts: &Tufts, budget: usize) -> Result<Reduction, TuftError> {
             .map(|(item, tuft)| item.now.min(item.refinement.plan(tolerance).triangles(&tuft.section)))
             .collect()
     };
-    let total = |tolerance: f32| count(tolerance).iter().sum::<usize>();
+    let rest = |tolerance: f32| simpler.iter().map(|s| s.triangles(tolerance)).sum::<usize>();
+    let total = |tolerance: f32| count(tolerance).iter().sum::<usize>() + rest(tolerance);
 
     // Bisect in the logarithm: from 1 micrometre to 10 metres, far finer than any tuft's steps differ
     let (mut lo, mut hi) = (-4.0_f32, 3.0_f32);
@@ -320,5 +328,11 @@ pub fn reduce(tufts: &Tufts, budget: usize) -> Result<Reduction, TuftError> {
             lowered.push((i, item.now, after));
         }
     }
-    Ok(Reduction { tufts: reduced, before, after: counts.iter().sum(), tolerance: Some(tolerance), lowered })
+    let pieces = simpler
+        .par_iter()
+        .zip(pieces)
+        .map(|(s, piece)| (s.triangles(tolerance) < piece.triangles.len()).then(|| s.mesh(tolerance)))
+        .collect();
+    let after = counts.iter().sum::<usize>() + rest(tolerance);
+    Ok(Reduction { tufts: reduced, pieces, before, after, tolerance: Some(tolerance), lowered })
 }

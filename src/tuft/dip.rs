@@ -74,7 +74,7 @@ fn base(surface: &Surface) -> f32 {
     root + (thickest / surface.sweep.length()).min(0.5 * (1.0 - root))
 }
 
-/// The depth at one station: (depth, deepest place, its outward normal, allowed depth, thickness).
+/// The depth at one station; 0 when it is no more than allowed.
 struct Probe {
     t: f32,
     depth: f32,
@@ -89,30 +89,38 @@ fn probes(tuft: &Tuft, options: &DipOptions, ground: &Ground) -> Vec<Probe> {
     let from = base(&surface);
     let unit = skin::outline(SIDES);
     let tips = tuft.section.split.map_or(1, |s| s.tips as usize);
-    (0..=STATIONS)
+    (0..STATIONS + 1)
+        .into_par_iter()
+        .with_min_len(8)
         .map(|i| {
             let t = from + (1.0 - from) * i as f32 / STATIONS as f32;
             let cut = surface.cut(t);
             let thickness = 2.0 * surface.section.radii(t).1;
             let allowed = (options.allowed * thickness).max(INVISIBLE * ground.scale);
-            let mut deepest = Probe { t, depth: 0.0, position: cut.frame.centre, normal: Vec3::Y, allowed, thickness };
-            let places = (0..tips).flat_map(|k| {
-                let cut = &cut;
+            let centre = cut.frame.centre;
+            let mut deepest = Probe { t, depth: 0.0, position: centre, normal: Vec3::Y, allowed, thickness };
+            let clear = ground.solid.clearance(centre);
+            for k in 0..tips {
                 // Prongs are tried at the corners of their own slices, a whole section at its own.
-                unit.iter().map(move |o| {
+                for o in &unit {
                     let (lo, width) = (2.0 * k as f32 / tips as f32 - 1.0, 2.0 / tips as f32);
                     let x = lo + width * (o.x + 1.0) * 0.5;
                     let y = o.y.signum() * (1.0 - x * x).max(0.0).sqrt();
-                    if tips == 1 { cut.place(o.x, o.y) } else { cut.prong(surface.section, (k, tips), x, y) }
-                })
-            });
-            for p in places {
-                if ground.solid.clearance(p) > 0.0 {
-                    continue;
-                }
-                let on = ground.solid.closest(p);
-                if -on.distance > deepest.depth {
-                    deepest = Probe { depth: -on.distance, position: p, normal: on.normal, ..deepest };
+                    let p = if tips == 1 { cut.place(o.x, o.y) } else { cut.prong(surface.section, (k, tips), x, y) };
+                    // A depth that is allowed, or less than another one here, need not be known: the distance changes
+                    // no faster than the place.
+                    let matters = deepest.depth.max(allowed);
+                    let near = clear > 0.0 && p.distance(centre) - clear <= matters;
+                    if near || ground.solid.clearance(p) > 0.0 {
+                        continue;
+                    }
+                    if ground.solid.closest_within(p, matters).is_some() {
+                        continue;
+                    }
+                    let on = ground.solid.closest(p);
+                    if -on.distance > deepest.depth {
+                        deepest = Probe { depth: -on.distance, position: p, normal: on.normal, ..deepest };
+                    }
                 }
             }
             deepest

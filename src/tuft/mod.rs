@@ -14,6 +14,7 @@ pub mod fill;
 mod ground;
 mod options;
 pub mod section;
+mod simplify;
 mod skin;
 pub mod stroke;
 mod sweep;

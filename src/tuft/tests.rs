@@ -349,7 +349,7 @@ fn a_budget_is_met_and_spent_where_it_shows() {
     let tufts = many();
     let before = tufts.triangle_count();
     for budget in [before, before / 2, before / 5] {
-        let r = reduce(&tufts, budget).unwrap();
+        let r = reduce(&tufts, &[], budget).unwrap();
         assert_eq!((r.before, r.after), (before, r.tufts.triangle_count()));
         assert!(r.after <= budget && r.after * 10 > budget * 7, "{} of {budget}", r.after);
         assert_eq!(r.tolerance.is_none(), budget == before);
@@ -362,9 +362,9 @@ fn a_budget_is_met_and_spent_where_it_shows() {
             .unwrap();
     let detail = Detail::Counts { rings: 19, sides: 40 };
     let two = Tufts::new(vec![Tuft { detail, ..thin }, Tuft { detail, ..tuft(Section::round(3.0, 0.5)) }], "");
-    let counts = reduce(&two, 1600).unwrap().tufts.mesh().triangles;
+    let counts = reduce(&two, &[], 1600).unwrap().tufts.mesh().triangles;
     assert!(counts[0].len() * 4 < counts[1].len(), "{counts:?}");
-    assert!(matches!(reduce(&tufts, 10), Err(TuftError::Budget { budget: 10, .. })));
+    assert!(matches!(reduce(&tufts, &[], 10), Err(TuftError::Budget { budget: 10, .. })));
 }
 
 /// A tuft that falls from a root at (azimuth, elevation) on the ball.

@@ -18,11 +18,11 @@ coif.test("look_around", function(t)
 end)
 
 coif.test("sway", function(t)
-  local scene = t:run("../../examples/moving/sway.lua", { strands = 1500 })
+  local scene = t:run("../../examples/moving/sway.lua", { strands = 700 })
   local first, last = scene:at(1).hair:stats(), scene:at(19).hair:stats()
   t:equal(first.strands, last.strands)
   t:near(first.mean_length, last.mean_length, 0.02 * first.mean_length)
-  for frame = 1, 36, 7 do
+  for frame = 1, 36, 17 do
     t:less(scene:at(frame):stats().inside, 15)
   end
   -- From one side to the other.

@@ -1,4 +1,6 @@
 -- Figure 10 of Shimosoyama, Yamamoto, Noma 2015: the two tufts that figure 11 fills between.
+-- The paper's: two tufts with the same number of control points (its section 4). The paper prints no numbers with this
+-- figure; chosen here: the strokes, and d, p = 60, 40 and 36, 30.
 local head = coif.head { style = "cartoon" }
 local function tuft(azimuth, d, p)
   return coif.tuft {

@@ -1,5 +1,7 @@
 -- Figure 11 of Shimosoyama, Yamamoto, Noma 2015: the two tufts of figure 10, filled by various densities m_W (around),
--- m_U (up) and m_D (down), without and with jitter. The numbers are not printed; `--set` gives others.
+-- m_U (up) and m_D (down), without jitter and, in its picture (d2), with.
+-- The paper's: densities are whole numbers from 1 to 100, jitter moves a root by up to pi/20 = 9 degrees in azimuth and
+-- elevation (`jitter = 1`). It prints no densities with the pictures; chosen here: m_W = 60, no rows; `--set` gives others.
 local p = coif.params {
   around = { 60, min = 1, max = 100, doc = "m_W" },
   up     = { 0, min = 0, max = 100, doc = "m_U; 0 for no rows" },

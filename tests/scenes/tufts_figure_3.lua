@@ -1,4 +1,5 @@
--- Figure 3 of Shimosoyama, Yamamoto, Noma 2015: one stroke, greatest diameter 25 and 100, place of it 10 and 80.
+-- Figure 3 of Shimosoyama, Yamamoto, Noma 2015: one stroke with several parameters.
+-- The paper's: (a) d = 25 and d = 100, (b) p = 10 and p = 80. Chosen here: p = 30 in (a), d = 60 in (b), the stroke.
 local head = coif.head { style = "cartoon" }
 
 local function tuft(azimuth, d, p)

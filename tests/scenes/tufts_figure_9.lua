@@ -1,5 +1,6 @@
--- Figure 9 of Shimosoyama, Yamamoto, Noma 2015: several strokes, each with several parameters. The numbers are not
--- printed; these show a straight stroke, an arc, a wave and a hook.
+-- Figure 9 of Shimosoyama, Yamamoto, Noma 2015: several strokes, each with several parameters d and p.
+-- The paper's: that a tuft follows its stroke and that d and p change it. The paper prints no numbers with this figure;
+-- chosen here: the four strokes (straight, an arc, a wave, a hook) and d, p = 20, 20; 45, 50; 70, 80.
 local head = coif.head { style = "cartoon" }
 
 local strokes = {

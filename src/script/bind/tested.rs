@@ -1,12 +1,12 @@
 //! What a test sees of a style: its scene, the parts by name, their figures.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use glam::Affine3A;
+use glam::{Affine3A, Vec3};
 use mlua::Lua;
+use rayon::prelude::*;
 
 use super::super::call::{Call, Result};
 use super::super::files::tidy;
@@ -16,12 +16,13 @@ use super::super::session::{Raised, Session, session};
 use super::super::testing::Tests;
 use super::super::{Ending, trace};
 use super::head::{give, heads};
-use crate::geometry::{Bounds, Solid, Strands, measure};
+use crate::geometry::{Bounds, Bvh, Clip, Mesh, Solid, Strands, measure};
 use crate::groom::count_inside;
 use crate::head::{Head, roots};
 use crate::params::{Handle, Object, Table, Value};
-use crate::scene::{Body, Motion, Part, Scene};
+use crate::scene::{Body, Locks, Motion, Part, Scene};
 use crate::task::Task;
+use crate::tuft::{DipOptions, dips};
 
 /// How near to a strand a place of the scalp is covered, cm.
 const REACH: f32 = 1.0;
@@ -71,9 +72,9 @@ crate::params! {
 }
 
 crate::params! {
-    /// The fraction of the scalp that has a strand within some distance.
+    /// The fraction of the scalp that has hair within some distance: a strand, or a surface of stylised hair.
     pub struct CoverageFields("TestPart:coverage") {
-        /// How near a strand must come.
+        /// How near hair must come.
         reach: f32 = REACH, unit("cm"), range(0.01, 100.0);
     }
 }
@@ -115,9 +116,10 @@ impl Object for TestPart {
 }
 
 const FIGURES: &str = "Figures. Of hair: `strands`, `points`, `guides`, `mean_length`, `longest`, `shortest` (cm), `inside` (strands with a \
-     node or a segment inside the head), `coverage` (the fraction of the scalp within 1 cm of a strand), `symmetry` (mean \
-     distance in cm from the hair's mirror image to the hair). Of a surface: `points`, `triangles`. Of both: `min` and \
-     `max`, the corners of the bounding box.";
+     node or a segment inside the head, and tufts that lie too deep in it beyond their buried bases, `bury` left out), \
+     `coverage` (the fraction of the scalp within 1 cm of a strand or of a surface of stylised hair), `symmetry` (mean \
+     distance in cm from the hair's mirror image to the hair; where there are strands and locks, of those that have the \
+     greater). Of a surface: `points`, `triangles`, `tufts`. Of all: `min` and `max`, the corners of the bounding box.";
 
 /// Tested scenes and their parts.
 pub fn nouns() -> Vec<Noun> {
@@ -262,14 +264,14 @@ impl Tested {
         Self { scene, moving, placed: placed.unwrap_or(Affine3A::IDENTITY), heads, figures }
     }
 
-    /// The strands of some of the parts, as seen from the head.
-    fn strands<'a>(&self, parts: &'a [Part]) -> Vec<Cow<'a, Strands>> {
-        let is_moved = self.placed != Affine3A::IDENTITY;
-        let seen = |s: &'a Strands| match is_moved {
-            true => Cow::Owned(s.transformed(&self.placed.inverse())),
-            false => Cow::Borrowed(s),
+    /// Some of the parts as seen from the head.
+    fn seen(&self, parts: &[Part]) -> Vec<Part> {
+        let back = Clip::new(1.0, vec![Arc::new(self.placed.inverse())]);
+        let still = |part: &Part| match self.placed == Affine3A::IDENTITY {
+            true => part.clone(),
+            false => Part { motion: Some(Motion::Rigid(back.clone())), ..part.clone() }.at(0),
         };
-        strands(parts).into_iter().map(seen).collect()
+        parts.iter().map(still).collect()
     }
 
     /// The tested scene in a field: what `t:run` gave, or a scene of the test's own.
@@ -308,10 +310,7 @@ impl Tested {
 
     /// Figures of some of the parts; `slot` is where they are kept.
     fn figures(&self, parts: &[Part], slot: usize, task: &Task) -> Value {
-        let compute = || {
-            let hair = self.strands(parts);
-            figures(parts, &hair.iter().map(|s| &**s).collect::<Vec<_>>(), &self.standing(), task)
-        };
+        let compute = || figures(parts, &self.seen(parts), &self.standing(), task);
         self.figures.get(slot).map_or_else(compute, |kept| kept.get_or_init(compute).clone())
     }
 }
@@ -326,7 +325,13 @@ fn strands(parts: &[Part]) -> Vec<&Strands> {
     parts.iter().filter_map(|p| if let Body::Hair(hair) = &p.body { Some(&*hair.strands) } else { None }).collect()
 }
 
-fn figures(parts: &[Part], hair: &[&Strands], heads: &[&Arc<Head>], task: &Task) -> Value {
+fn locks(parts: &[Part]) -> Vec<&Locks> {
+    parts.iter().filter_map(|p| if let Body::Locks(locks) = &p.body { Some(locks) } else { None }).collect()
+}
+
+/// `seen` are the parts as seen from the head.
+fn figures(parts: &[Part], seen: &[Part], heads: &[&Arc<Head>], task: &Task) -> Value {
+    let (hair, locks) = (strands(seen), locks(seen));
     let mut bounds = Bounds::EMPTY;
     let (mut points, mut triangles, mut guides, mut tufts) = (0, 0, 0, 0);
     for part in parts {
@@ -361,15 +366,20 @@ fn figures(parts: &[Part], hair: &[&Strands], heads: &[&Arc<Head>], task: &Task)
     if !hair.is_empty() {
         let lengths: Vec<f32> = hair.iter().flat_map(|s| (0..s.count()).map(|i| s.length(i))).collect();
         let sum: f64 = lengths.iter().copied().map(f64::from).sum();
-        let inside: usize = heads.iter().map(|h| within(&h.solid, hair)).sum();
         put("strands", lengths.len() as f64);
         put("guides", guides as f64);
         put("mean_length", plain((sum / lengths.len().max(1) as f64) as f32));
         put("longest", plain(lengths.iter().copied().fold(0.0, f32::max)));
         put("shortest", plain(lengths.iter().copied().reduce(f32::min).unwrap_or(0.0)));
-        put("inside", inside as f64);
-        put("symmetry", plain(measure::mirror_distance(hair)));
-        if let Some(fraction) = covered(heads, hair, REACH, task) {
+    }
+    if !hair.is_empty() || !locks.is_empty() {
+        let strands: usize = heads.iter().map(|h| within(&h.solid, &hair)).sum();
+        let tufts: usize = heads.iter().map(|h| sunk(h, &locks, task)).sum();
+        put("inside", (strands + tufts) as f64);
+        let surface = surface(&locks);
+        let of_locks = surface.as_ref().map_or(0.0, |s| s.mirror_distance());
+        put("symmetry", plain(measure::mirror_distance(&hair).max(of_locks)));
+        if let Some(fraction) = covered(heads, &hair, surface.as_ref(), REACH, task) {
             put("coverage", fraction);
         }
     }
@@ -389,14 +399,61 @@ fn within(solid: &Solid, hair: &[&Strands]) -> usize {
     hair.iter().map(|s| count_inside(s, solid)).sum()
 }
 
-/// The fraction of the scalp within `reach` cm of a strand; `None` without a head.
-fn covered(heads: &[&Arc<Head>], hair: &[&Strands], reach: f32, task: &Task) -> Option<f64> {
+/// How many tufts lie in the head by more than half their thickness beyond their buried bases.
+fn sunk(head: &Head, locks: &[&Locks], task: &Task) -> usize {
+    let ground = super::tuft::ground(head);
+    let count = |locks: &&Locks| {
+        let mut found = dips(&locks.tufts, &DipOptions::default(), &ground, task).unwrap_or_default();
+        found.dedup_by_key(|dip| dip.tuft);
+        found.len()
+    };
+    locks.iter().map(count).sum()
+}
+
+/// All surfaces of stylised hair.
+struct Surface {
+    places: Vec<Vec3>,
+    tree: Bvh,
+}
+
+/// The surfaces as one; none without triangles.
+fn surface(locks: &[&Locks]) -> Option<Surface> {
+    let mut all = Mesh::default();
+    for locks in locks {
+        let (mesh, first) = (&locks.mesh.mesh, all.positions.len() as u32);
+        all.positions.extend_from_slice(&mesh.positions);
+        all.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + first)));
+    }
+    (!all.triangles.is_empty())
+        .then(|| Surface { tree: Bvh::new(&all.positions, &all.triangles), places: all.positions })
+}
+
+impl Surface {
+    /// Mean distance in cm from the mirror images of the corners to the surfaces.
+    fn mirror_distance(&self) -> f32 {
+        let off: Vec<f32> = self
+            .places
+            .par_iter()
+            .map(|p| {
+                let mirrored = Vec3::new(-p.x, p.y, p.z);
+                self.tree.closest(mirrored, f32::INFINITY).map_or(0.0, |c| c.position.distance(mirrored))
+            })
+            .collect();
+        let sum: f64 = off.iter().copied().map(f64::from).sum();
+        (sum / off.len().max(1) as f64) as f32
+    }
+}
+
+/// The fraction of the scalp within `reach` cm of hair; `None` without a head.
+fn covered(heads: &[&Arc<Head>], hair: &[&Strands], surface: Option<&Surface>, reach: f32, task: &Task) -> Option<f64> {
     let mut places = vec![];
     for head in heads {
         let found = roots(head, &head.scalp(), PLACES, PLACES_SEED, task).ok()?;
         places.extend(found.into_iter().map(|r| r.position));
     }
-    let hits = measure::covered(&places, hair, reach).into_iter().filter(|c| *c).count();
+    let strands = measure::covered(&places, hair, reach);
+    let under = |p: Vec3| surface.is_some_and(|s| s.tree.closest(p, reach).is_some());
+    let hits = places.iter().zip(strands).filter(|&(&p, near)| near || under(p)).count();
     (!places.is_empty()).then(|| hits as f64 / places.len() as f64)
 }
 
@@ -414,9 +471,9 @@ fn part_stats(call: &Call) -> Result<Value> {
 fn coverage(call: &Call) -> Result<Value> {
     let (this, fields) = (call.this::<TestPart>()?, call.read::<CoverageFields>()?);
     let part = this.tested.scene.parts.get(this.index..=this.index).unwrap_or(&[]);
-    let hair = this.tested.strands(part);
-    let hair: Vec<&Strands> = hair.iter().map(|s| &**s).collect();
-    let fraction = covered(&this.tested.standing(), &hair, fields.reach, call.task());
+    let part = this.tested.seen(part);
+    let surface = surface(&locks(&part));
+    let fraction = covered(&this.tested.standing(), &strands(&part), surface.as_ref(), fields.reach, call.task());
     fraction.map(Value::Number).ok_or_else(|| call.problem("there is no head whose scalp could be covered", None))
 }
 
