@@ -7,6 +7,8 @@ mod clip;
 mod constants;
 mod deform;
 mod domain;
+mod dynamics;
+mod force;
 mod garment;
 mod golden;
 mod guides;
@@ -41,6 +43,7 @@ pub fn registry() -> Registry {
         params::functions(),
         head::functions(),
         domain::functions(),
+        force::functions(),
         tuft::functions(),
         piece::functions(),
         deform::functions(),
@@ -54,6 +57,7 @@ pub fn registry() -> Registry {
         vec![region::noun(), guides::noun(), strands::noun()],
         clip::nouns(),
         domain::nouns(),
+        force::nouns(),
         tuft::nouns(),
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
         deform::nouns(),
