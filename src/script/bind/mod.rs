@@ -8,6 +8,8 @@ mod clip;
 mod constants;
 mod deform;
 mod domain;
+mod dynamics;
+mod force;
 mod garment;
 mod golden;
 mod guides;
@@ -43,6 +45,7 @@ pub fn registry() -> Registry {
         params::functions(),
         head::functions(),
         domain::functions(),
+        force::functions(),
         tuft::functions(),
         piece::functions(),
         animate::functions(),
@@ -57,6 +60,7 @@ pub fn registry() -> Registry {
         vec![region::noun(), guides::noun(), strands::noun()],
         clip::nouns(),
         domain::nouns(),
+        force::nouns(),
         tuft::nouns(),
         vec![animate::noun()],
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
