@@ -3,6 +3,7 @@
 //! Each file has the same shape: parameter structs, then `functions()` or `noun()`, then what they do. A binding reads
 //! its arguments strictly, calls the core, and gives the core's errors a place. This file is the table of contents.
 
+mod animate;
 mod clip;
 mod constants;
 mod deform;
@@ -18,6 +19,7 @@ mod overlay;
 mod params;
 mod picture;
 mod piece;
+mod posed;
 mod region;
 mod scene;
 mod strands;
@@ -46,6 +48,7 @@ pub fn registry() -> Registry {
         force::functions(),
         tuft::functions(),
         piece::functions(),
+        animate::functions(),
         deform::functions(),
         garment::functions(),
         material::functions(),
@@ -59,6 +62,7 @@ pub fn registry() -> Registry {
         domain::nouns(),
         force::nouns(),
         tuft::nouns(),
+        vec![animate::noun()],
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
         deform::nouns(),
         vec![garment::noun()],
