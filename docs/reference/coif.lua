@@ -509,6 +509,52 @@ function coif.bun(fields) end
 ---@return coif.Piece
 function coif.ring(fields) end
 
+---What `coif.path` takes.
+---@class (exact) coif.path.fields
+---@field points? (coif.Point|coif.Head.point.fields)[] # Places that the handle passes, in head space. [cm]
+---@field offsets? coif.Point[] # The same as seen from where the handle is at rest, so that one path does for many locks. [cm]
+---@field states? integer[] # The same as numbers of states: the handle passes where it is in each; 1 is the rest.
+---@field frames? number # How many frames it takes. [whole; 1 to 100000; default 40]
+---@field curve? "spline"|"line" # What joins the points. [default "spline"]
+---@field ease? "linear"|"in"|"out"|"smooth" # How speed changes on the way; with `times`, from each point to the next. [default "linear"]
+---@field times? number[] # When each point is passed, rising, in any unit: the first is the first frame, the last the last. Without them speed is even but for `ease`. A closed path has one more, for the way back to its first point.
+---@field closed? boolean # Leads from the last point on to the first. [default false]
+---@field back? boolean # Turns round at the last point and comes back the same way. [default false]
+
+---A path for the handle of a lock. Give `points`, `offsets` or `states`.
+---@param fields? coif.path.fields
+---@return coif.Path
+function coif.path(fields) end
+
+---Vertices that follow paths.
+---@class (exact) coif.animate.handles
+---@field at? "tip"|number|coif.Point # Which vertex: "tip", a number from 0 (root) to 1 (tip) on the side away from the head, or the one nearest to a place. [default "tip"]
+---@field path coif.Path # The way it goes.
+---@field lock? number # Only on the lock of this number; on all of them when left out. [whole; 1 to 1000000]
+
+---Lets the handles trail behind the head's motion: `{}`, or how.
+---@class (exact) coif.animate.lag
+---@field frequency? number # How fast it swings: slow for long and heavy locks. [1/s; 0.1 to 20; default 1.5]
+---@field damping? number # How soon the swing dies: 0 never, 1 without swinging over. [0.02 to 4; default 0.35]
+---@field amount? number # How much of the lag is shown. [0 to 2; default 1]
+
+---What `coif.animate` takes.
+---@class (exact) coif.animate.fields
+---@field states (coif.Tufts|coif.Piece)[] # The rest, and the same locks posed in other ways: all tufts with the same number of locks, or all pieces of one mesh. The rings and sides of tufts are made the same; the rest's look counts.
+---@field path? coif.Path # The way of the tip of every lock; the same as one handle with `at = "tip"`.
+---@field handles? coif.animate.handles[] # Vertices that follow paths.
+---@field held? "root"|number|fun(place: vector, along: number): boolean # What stays: "root", everything up to a part of the way from root (0) to tip (1), or a function that is asked about every vertex: its place, and how far along it is. [default "root"]
+---@field rate? number # Frames in a second; that of `motion` when left out, or 24. [1/s; 1 to 240]
+---@field loop? boolean # The first frame follows the last; paths must then end where they began, by `closed` or `back`. [default false]
+---@field stagger? number # Each lock begins so much later than the one before it. [s; -100 to 100; default 0]
+---@field motion? coif.Motion # What the head does meanwhile: the locks are carried along.
+---@field lag? coif.animate.lag # Lets the handles trail behind the head's motion: `{}`, or how.
+
+---Locks that move: posed states, and paths for their handles. The whole surface follows in the way the states
+---show.
+---@param fields coif.animate.fields
+---@return coif.LocksClip
+function coif.animate(fields) end
 ---What `coif.lattice` takes.
 ---@class (exact) coif.lattice.fields
 ---@field around? coif.Garment|coif.Strands|coif.Tufts|coif.Piece|coif.Head|coif.Box|nil # What it goes around: a garment, hair, a head, or a box.
@@ -1365,6 +1411,11 @@ function Tufts:carry(fields) end
 ---How stylised hair looks; made by `coif.material.tuft`.
 ---@class coif.TuftMaterial
 local TuftMaterial = {}
+
+---The way of a handle; made by `coif.path`.
+---@class coif.Path
+---@field frames number # How many frames it takes.
+local Path = {}
 
 ---A cap, a bun or a ring of stylised hair.
 ---@class coif.Piece

@@ -8,7 +8,7 @@
 //! M(w) = exp(sum w_i log R_i) (I + sum w_i (S_i - I)) P
 //! ```
 //!
-//! with the rest as a state whose weight is one less all others. Everything is weighted by area.
+//! with the rest as a state whose weight is one less all others. All triangles count alike.
 
 use glam::{DVec2, DVec3};
 use multiversion::multiversion;
@@ -85,7 +85,7 @@ struct Tile {
     corners: [[u32; 3]; TILE],
     /// `P`: two vectors.
     axes: [Lane; 6],
-    /// The share of the whole area.
+    /// One over the number of triangles; 0 where there is none.
     weight: Lane,
     /// Weight times rate: first edge in column 0, first and second edge in column 1.
     rates: [Lane; 3],
@@ -112,19 +112,18 @@ pub(super) struct Blend {
 impl Features {
     /// Triangles with their rows in the system, and per state all changes.
     pub(super) fn new(triangles: &[([u32; 3], Flat)], states: &[Vec<Change>]) -> Self {
-        let whole: f64 = triangles.iter().map(|(_, f)| f.double_area()).sum();
+        let share = 1.0 / triangles.len() as f64;
         let mut features = Self { states: states.len(), ..Self::default() };
         for (t, chunk) in triangles.chunks(TILE).enumerate() {
             // What is missing in the last tile has no weight.
             let mut tile =
                 Tile { corners: [[0; 3]; TILE], axes: [[0.0; TILE]; 6], weight: [0.0; TILE], rates: [[0.0; TILE]; 3] };
             for (l, (corners, flat)) in chunk.iter().enumerate() {
-                let weight = flat.double_area() / whole;
                 let (first, second) = flat.rates();
                 tile.corners[l] = *corners;
-                tile.weight[l] = weight;
+                tile.weight[l] = share;
                 for (to, rate) in tile.rates.iter_mut().zip([first, second.0, second.1]) {
-                    to[l] = weight * rate;
+                    to[l] = share * rate;
                 }
                 let axes = flat.axes.iter().flat_map(|a| a.to_array());
                 tile.axes.iter_mut().zip(axes).for_each(|(to, x)| to[l] = x);
@@ -424,7 +423,7 @@ mod tests {
     #[test]
     fn a_blend_is_what_it_says_and_its_derivatives_are_its_slopes() {
         let (triangles, states, features) = features();
-        let whole: f64 = triangles.iter().map(|(_, f)| f.double_area()).sum();
+        let weight = 1.0 / triangles.len() as f64;
         for w in [[0.0, 0.0, 0.0], [0.3, 0.9, -0.4], [1.0, 0.0, 0.0], [1.7, 1.1, 2.0]] {
             let mut blend = features.blend(12);
             features.evaluate(&w, &mut blend);
@@ -441,7 +440,6 @@ mod tests {
             let mut right = vec![[0.0; LANES]; 12];
             for (f, field) in fields.iter().enumerate() {
                 for ((corners, flat), m) in triangles.iter().zip(field) {
-                    let weight = flat.double_area() / whole;
                     let (first, second) = flat.rates();
                     let b = (m[0] * first + m[1] * second.0) * weight;
                     let c = m[1] * second.1 * weight;
@@ -462,7 +460,7 @@ mod tests {
                     let want: f64 = triangles
                         .iter()
                         .zip(fields[a].iter().zip(&fields[b]))
-                        .map(|((_, flat), (m, n))| flat.double_area() / whole * (m[0].dot(n[0]) + m[1].dot(n[1])))
+                        .map(|(_, (m, n))| weight * (m[0].dot(n[0]) + m[1].dot(n[1])))
                         .sum();
                     assert!((blend.inner[a][b] - want).abs() < 1e-6, "{a} {b}: {} {want}", blend.inner[a][b]);
                 }

@@ -27,7 +27,7 @@ crate::choices! {
         /// Slower and slower, to rest.
         Out = "out",
         /// From rest to rest.
-        InOut = "in_out",
+        Smooth = "smooth",
     }
 }
 
@@ -38,7 +38,7 @@ impl Ease {
             Self::Linear => t,
             Self::In => t * t,
             Self::Out => t * (2.0 - t),
-            Self::InOut => t * t * (3.0 - 2.0 * t),
+            Self::Smooth => t * t * (3.0 - 2.0 * t),
         }
     }
 }
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn timed_points_are_passed_on_time() {
         let points = square();
-        for ease in [Ease::Linear, Ease::In, Ease::Out, Ease::InOut] {
+        for ease in [Ease::Linear, Ease::In, Ease::Out, Ease::Smooth] {
             let timed = PathOptions { ease, times: Some(vec![2.0, 3.0, 3.5, 6.0]), ..options(41) };
             let path = timed.sample(&points, false).unwrap();
             for (frame, point) in [(0, 0), (10, 1), (15, 2), (40, 3)] {
@@ -246,12 +246,12 @@ mod tests {
 
     #[test]
     fn easing_starts_and_stops_where_it_says() {
-        for ease in [Ease::Linear, Ease::In, Ease::Out, Ease::InOut] {
+        for ease in [Ease::Linear, Ease::In, Ease::Out, Ease::Smooth] {
             assert_eq!((ease.at(0.0), ease.at(1.0)), (0.0, 1.0));
             let eased = PathOptions { ease, ..options(50) }.sample(&square(), false).unwrap();
             let steps = steps(&eased);
             let (slow_start, slow_end) = (steps[0] < 0.3 * steps[24], steps[48] < 0.3 * steps[24]);
-            let expected = (matches!(ease, Ease::In | Ease::InOut), matches!(ease, Ease::Out | Ease::InOut));
+            let expected = (matches!(ease, Ease::In | Ease::Smooth), matches!(ease, Ease::Out | Ease::Smooth));
             assert_eq!((slow_start, slow_end), expected, "{ease:?}");
         }
     }

@@ -22,6 +22,12 @@ use super::rig::{Fixed, Rig};
 pub const TOLERANCE: f64 = 1e-5;
 /// After so many iterations a frame is given up.
 const MOST_ITERATIONS: u32 = 60;
+/// What a weight beyond the states costs: its distance from 0..=1, squared, times this. A residual of a tenth is a hundredth
+/// squared, so a weight of 2 is taken for that, but not one of 6.
+const BLENDING: f64 = 0.01;
+/// A frame further than this from its blend is looked for from every state too, and the other place is taken when its energy
+/// is less than a quarter: going on from frame to frame may end where the states do not lead.
+const SUSPECT: f64 = 0.15;
 /// Keeps the small system solvable where weights make no difference: states that are alike.
 const FLOOR: f64 = 1e-9;
 
@@ -32,8 +38,7 @@ pub struct Posed {
     pub weights: Vec<f64>,
     /// Iterations made, all starts together.
     pub iterations: u32,
-    /// How far the triangles are from the blend of the states: the root mean square over the area of how much a length
-    /// differs, 0 for a state itself, 0.1 for 10 %.
+    /// How far the triangles are from the blend of the states: the root mean square of how much a length differs, 0 for a state itself, 0.1 for 10 %.
     pub residual: f64,
     /// Greatest movement of a vertex in the last iteration, cm.
     pub step: f64,
@@ -55,6 +60,8 @@ pub struct Poser<'a> {
     /// Places by row, from the centre.
     x: Vec<[f64; 3]>,
     pub(super) most_iterations: u32,
+    /// [`BLENDING`]; tests of the plain energy have 0.
+    pub(super) blending: f64,
 }
 
 /// One descent.
@@ -84,6 +91,7 @@ impl<'a> Poser<'a> {
             shift: vec![[0.0; 3]; rig.unknowns()],
             x: rig.places.iter().map(|p| p.to_array()).collect(),
             most_iterations: MOST_ITERATIONS,
+            blending: BLENDING,
         }
     }
 
@@ -102,11 +110,16 @@ impl<'a> Poser<'a> {
         assert_eq!((targets.len(), out.len()), (self.rig.handles(), self.rig.rest.len()));
         self.fix(targets);
         let mut iterations = 0;
-        let mut best = None;
+        let (mut best, mut warm) = (None, None);
         if let Some(start) = self.warm() {
             let descent = self.descend(start);
             iterations += descent.iterations;
-            best = descent.converged.then_some(descent);
+            let suspect = self.residual(&descent) > SUSPECT;
+            match descent.converged {
+                true if suspect => warm = Some(descent),
+                true => best = Some(descent),
+                false => {}
+            }
         }
         let best = best.unwrap_or_else(|| {
             let states = self.rig.states;
@@ -117,9 +130,11 @@ impl<'a> Poser<'a> {
             let last = descents.len() - 1;
             let (at, best) =
                 descents.into_iter().enumerate().min_by(|a, b| better(&a.1, &b.1)).unwrap_or_else(|| unreachable!());
-            if at == last {
-                return best;
-            }
+            let best = match warm {
+                Some(warm) if best.energy > 0.25 * warm.energy => warm,
+                _ if at == last => return best,
+                _ => best,
+            };
             // The places are those of the last descent: go to the best once more.
             let again = self.descend(best.weights);
             iterations += again.iterations;
@@ -127,8 +142,14 @@ impl<'a> Poser<'a> {
         });
         self.write(targets, out);
         self.weights = [Some(best.weights.clone()), self.weights[0].take()];
-        let residual = best.energy.max(0.0).sqrt();
+        let residual = self.residual(&best);
         Posed { weights: best.weights, iterations, residual, step: best.step, converged: best.converged }
+    }
+
+    fn residual(&self, found: &Descent) -> f64 {
+        let mut blending = Small { energy: 0.0, slope: [0.0; FIELDS], hessian: [[0.0; FIELDS]; FIELDS] };
+        self.blended(&found.weights, &mut blending);
+        (found.energy - blending.energy).max(0.0).sqrt()
     }
 
     /// Where the last two frames lead.
@@ -247,7 +268,28 @@ impl<'a> Poser<'a> {
         let pull = |&(fixed, row, a): &(u32, u32, f64)| a * dot(&self.x[free + fixed as usize], &self.x[row as usize]);
         let pulled: f64 = rig.coupling.iter().map(pull).sum();
         small.energy = inner[0][0] - with_places[0] - at_fixed + pulled;
+        self.blended(weights, &mut small);
         small
+    }
+
+    /// Adds what weights beyond the states cost, the rest's included. Between the states, and at each of them, nothing: so
+    /// every state is still met exactly.
+    fn blended(&self, weights: &[f64], small: &mut Small) {
+        let beyond = |w: f64| w - w.clamp(0.0, 1.0);
+        let of_rest = beyond(1.0 - weights.iter().sum::<f64>());
+        let cost = self.blending;
+        small.energy += cost * of_rest * of_rest;
+        for (i, w) in weights.iter().enumerate() {
+            let own = beyond(*w);
+            small.energy += cost * own * own;
+            small.slope[i] += cost * (own - of_rest);
+            if own != 0.0 {
+                small.hessian[i][i] += cost;
+            }
+            if of_rest != 0.0 {
+                small.hessian[i][..weights.len()].iter_mut().for_each(|h| *h += cost);
+            }
+        }
     }
 
     /// The product of the right-hand side of one field with the solution of another, over the free rows.

@@ -201,19 +201,19 @@ fn tied(shape: &Shape, rest: &Mesh, fixed: &[Option<Fixed>]) -> Result<(), Anima
 struct Laplacian(Vec<Vec<(u32, f64)>>);
 
 impl Laplacian {
-    /// Of triangles weighted by area: the cotangent Laplacian, over the whole area.
+    /// Of triangles that count alike: a cotangent Laplacian, each triangle over its area and their number.
     fn new(shape: &Shape, flat: &[super::feature::Flat]) -> Self {
-        let whole: f64 = flat.iter().map(super::feature::Flat::double_area).sum();
+        let share = 1.0 / flat.len() as f64;
         let mut rows: Vec<Vec<(u32, f64)>> = vec![vec![]; shape.first.len()];
         for (corners, flat) in shape.triangles.iter().zip(flat) {
             // The gradients of the three hat functions.
-            let (weight, [b, c]) = (flat.double_area(), flat.corners);
-            let gb = glam::DVec2::new(c.y, -c.x) / weight;
-            let gc = glam::DVec2::new(-b.y, b.x) / weight;
+            let (double_area, [b, c]) = (flat.double_area(), flat.corners);
+            let gb = glam::DVec2::new(c.y, -c.x) / double_area;
+            let gc = glam::DVec2::new(-b.y, b.x) / double_area;
             let gradients = [-gb - gc, gb, gc];
             for (&i, gi) in corners.iter().zip(&gradients) {
                 for (&j, gj) in corners.iter().zip(&gradients) {
-                    rows[i as usize].push((j, gi.dot(*gj) * weight / whole));
+                    rows[i as usize].push((j, gi.dot(*gj) * share));
                 }
             }
         }

@@ -125,6 +125,9 @@ pub struct RunArguments {
     /// Width of one view in pixels
     #[arg(long, value_name = "PX", default_value_t = 640, value_parser = clap::value_parser!(u32).range(16..=8192))]
     pub size: u32,
+    /// Samples per pixel along each side: more is finer and slower; 2, in `watch` 1, when left out
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4))]
+    pub samples: Option<u32>,
     /// Files for other programs [glb, usda, hair]; NAME.glb alone when left out
     #[arg(long, value_name = "FORMAT,...", value_delimiter = ',', default_value = "glb", value_parser = format)]
     pub format: Vec<Format>,

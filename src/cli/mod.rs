@@ -63,14 +63,20 @@ pub fn main() -> ExitCode {
     })
 }
 
-fn run_options(arguments: &RunArguments) -> RunOptions {
+/// What the arguments ask for; `samples` per pixel along each side when they do not say.
+fn run_options(arguments: &RunArguments, samples: u32) -> RunOptions {
     RunOptions {
         script: script_options(&arguments.script),
         out: arguments.out.clone(),
         debug: arguments.debug,
         background: arguments.background,
         views: arguments.views.clone(),
-        sheet: SheetOptions { width: arguments.size, height: arguments.size * 9 / 8, ..SheetOptions::default() },
+        sheet: SheetOptions {
+            width: arguments.size,
+            height: arguments.size * 9 / 8,
+            supersample: arguments.samples.unwrap_or(samples),
+            ..SheetOptions::default()
+        },
         strands: arguments.strands,
         tolerance: arguments.tolerance,
         guides: arguments.guides && arguments.strands != StrandForm::None,
@@ -93,7 +99,7 @@ fn formats(given: &[Format]) -> Vec<Format> {
 }
 
 fn command_run(arguments: &RunArguments) -> u8 {
-    let options = run_options(arguments);
+    let options = run_options(arguments, SheetOptions::default().supersample);
     let progress = Arc::new(Progress::new(!arguments.quiet));
     let bar = Arc::clone(&progress);
     let report = match barrier::run(&arguments.script, move |task| {

@@ -5,6 +5,7 @@
 pub mod bounds;
 pub mod bvh;
 mod cells;
+pub mod clear;
 pub mod clip;
 pub mod curtain;
 pub mod curve;
@@ -15,12 +16,14 @@ pub mod obox;
 pub mod polygon;
 pub mod sample;
 pub mod slice;
+pub mod slide;
 pub mod solid;
 pub mod strands;
 
 pub use bounds::Bounds;
 pub use bvh::{Bvh, Closest, Hit};
 pub use cells::Vicinity;
+pub use clear::Clear;
 pub use clip::Clip;
 pub use curtain::Curtain;
 pub use mesh::{Group, Mesh, MeshError};

@@ -9,7 +9,6 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::clear::{Clear, Outcome, Scratch};
 use super::error::{GroomError, check_size, check_value};
 use super::grow::stuck_warning;
 use super::guides::check_root;
@@ -17,8 +16,8 @@ use super::layout;
 use super::natural::first_normal;
 use super::neighbours::{Nearest, agreement};
 use super::noise::gaussian3;
-use super::step::Body;
-use crate::geometry::{Root, Solid, Strands, curve, curve::Resampler, frames};
+use crate::geometry::clear::{Clear, Outcome, Scratch};
+use crate::geometry::{Root, Solid, Strands, curve, curve::Resampler, frames, slide::Body};
 use crate::math::{rng::Key, trig};
 use crate::task::{Task, Warned, Warning};
 

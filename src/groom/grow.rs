@@ -4,14 +4,13 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::clear::{Clear, Outcome, Scratch};
 use super::domain::Domain;
 use super::error::{GroomError, check_value};
 use super::guides::Guides;
 use super::layout;
 use super::queue::{Entered, Queue, Walk};
-use super::step::Body;
-use crate::geometry::{OrientedBox, Solid, Strands, curve::Resampler};
+use crate::geometry::clear::{Clear, Outcome, Scratch};
+use crate::geometry::{OrientedBox, Solid, Strands, curve::Resampler, slide::Body};
 use crate::math::rng::Key;
 use crate::params::Function;
 use crate::task::{Task, Warned, Warning};

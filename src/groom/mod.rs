@@ -6,7 +6,6 @@
 //!
 //! The words are those of `docs/glossary.md`; the equations are numbered as in the paper.
 
-mod clear;
 mod domain;
 mod error;
 mod fill;
@@ -19,12 +18,12 @@ mod neighbours;
 mod noise;
 mod queue;
 mod region;
-mod step;
 
 #[cfg(test)]
 mod tests;
 
-pub use clear::{count_inside, is_inside, keep_out};
+pub use crate::geometry::clear::{count_inside, is_inside, keep_out};
+pub use crate::geometry::slide::Body;
 pub use domain::{Curl, Directional, Domain, Gather, Measure, NaturalOptions, Turn, Wave};
 pub use error::GroomError;
 pub use fill::{Fill, FillOptions, Separated, fill, member_nodes};
@@ -34,4 +33,3 @@ pub use moving::{Moving, deform_clip, fill_clip, pass_through};
 pub use natural::{Deform, DeformOptions, Natural, NaturalQueue, Shape, deform, deformed_points, fade, ramp, scale};
 pub use queue::{Queue, QueueOptions, Stage, Walk};
 pub use region::BoxOptions;
-pub use step::Body;

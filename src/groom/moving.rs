@@ -10,12 +10,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use glam::{Affine3A, Quat, Vec3};
 use rayon::prelude::*;
 
-use super::clear::{Clear, Outcome, Scratch};
 use super::error::GroomError;
 use super::fill::{Fill, Prepared, Worker, check, left_out, usual_nodes};
 use super::natural::{Deform, deform, deform_frame};
-use super::step::Body;
-use crate::geometry::{Clip, Root, Solid, Strands};
+use crate::geometry::clear::{Outcome, Scratch};
+use crate::geometry::slide::Body;
+use crate::geometry::{Clear, Clip, Root, Solid, Strands};
 use crate::task::{Task, Warned};
 
 /// Most memory of one clip, in 10^9 bytes.

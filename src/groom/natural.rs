@@ -10,15 +10,14 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use super::clear::{Clear, Outcome, Scratch};
 use super::domain::{Curl, Domain, Measure, NaturalOptions, Turn, Wave};
 use super::error::{GroomError, check_size, check_value};
 use super::grow::{never_entered, stuck_warning};
 use super::layout;
 use super::noise;
 use super::queue::{Entered, Stage, stages};
-use super::step::Body;
-use crate::geometry::{OrientedBox, Root, Solid, Strands, curve, curve::Resampler, frames};
+use crate::geometry::clear::{Clear, Outcome, Scratch};
+use crate::geometry::{OrientedBox, Root, Solid, Strands, curve, curve::Resampler, frames, slide::Body};
 use crate::math::{rng::Key, trig};
 use crate::params::{Function, Object};
 use crate::task::{Task, Warned};

@@ -153,3 +153,23 @@ pub trait Params: Sized {
     /// Reads a table, collecting every problem in `reader`; `None` when there was one.
     fn read(table: &Table, reader: &mut Reader) -> Option<Self>;
 }
+
+/// Two structs that share one table; their fields must have different names.
+impl<A: Params, B: Params> Params for (A, B) {
+    const NAME: &'static str = A::NAME;
+    const DOC: &'static str = A::DOC;
+
+    fn fields() -> Vec<Field> {
+        A::fields().into_iter().chain(B::fields()).collect()
+    }
+
+    fn read(table: &Table, reader: &mut Reader) -> Option<Self> {
+        reader.reject_unknown(table, &Self::fields(), Self::NAME);
+        let part = |own: &[Field]| Table {
+            items: if own.iter().any(|f| f.is_positional) { table.items.clone() } else { vec![] },
+            fields: own.iter().filter_map(|f| Some((f.name.to_owned(), table.fields.get(f.name)?.clone()))).collect(),
+        };
+        let (a, b) = (A::read(&part(&A::fields()), reader), B::read(&part(&B::fields()), reader));
+        Some((a?, b?))
+    }
+}

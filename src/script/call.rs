@@ -17,7 +17,7 @@ use super::{Diagnostic, Frame, Severity, protect, strict, trace};
 use crate::geometry::{Root, Strands};
 use crate::groom::{GroomError, Moving};
 use crate::math::{Digest, rng::Key};
-use crate::params::{self, Function, Handle, Object, Params, Problem, Reader, Table, Value};
+use crate::params::{self, Function, Handle, Object, Params, Problem, Table, Value};
 use crate::task::{Task, Warned, Warning};
 
 /// What bindings give back.
@@ -157,19 +157,7 @@ impl Call<'_> {
     /// # Errors
     /// Every problem found in it.
     pub fn read_both_from<A: Params, B: Params>(&self, table: &Table) -> Result<(A, B)> {
-        let fields: Vec<_> = A::fields().into_iter().chain(B::fields()).collect();
-        let mut reader = Reader::default();
-        reader.reject_unknown(table, &fields, self.entry.name);
-        let part = |own: Vec<params::Field>| Table {
-            items: if own.iter().any(|f| f.is_positional) { table.items.clone() } else { vec![] },
-            fields: own.iter().filter_map(|f| Some((f.name.to_owned(), table.fields.get(f.name)?.clone()))).collect(),
-        };
-        let both = (A::read(&part(A::fields()), &mut reader), B::read(&part(B::fields()), &mut reader));
-        let problems = reader.problems();
-        match both {
-            (Some(a), Some(b)) if problems.is_empty() => Ok((a, b)),
-            _ => Err(self.problems(problems)),
-        }
+        params::read(table).map_err(|problems| self.problems(problems))
     }
 
     /// A call's own seed together with the run's: with the run's seed 0 the call's own.

@@ -10,9 +10,11 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use glam::Vec3;
+
 use crate::deform::Fitted;
 use crate::garment::Garment;
-use crate::geometry::{Mesh, Root, Strands};
+use crate::geometry::{Clip, Mesh, Root, Strands};
 use crate::groom::Moving;
 use crate::head::Head;
 use crate::math::Digest;
@@ -63,6 +65,12 @@ impl Kept for Mesh {
 impl Kept for Vec<Root> {
     fn bytes(&self) -> usize {
         size_of_val(&**self)
+    }
+}
+
+impl Kept for Clip<Vec<Vec3>> {
+    fn bytes(&self) -> usize {
+        self.frames.iter().map(|f| size_of_val(&f[..])).sum()
     }
 }
 

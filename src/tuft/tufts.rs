@@ -85,6 +85,12 @@ impl Tuft {
         self.surface().sweep.length()
     }
 
+    /// Rings and sides of its mesh.
+    pub fn counts(&self) -> (usize, usize) {
+        let plan = plan(self, &self.surface());
+        (plan.rings.len(), plan.sides)
+    }
+
     pub(super) fn surface(&self) -> Surface<'_> {
         Surface::new(&self.stroke, &self.section, self.up)
     }

@@ -59,3 +59,29 @@ coif.test("clips", function(t)
   t:less(t:scene(scene, 11):stats().inside, 3)
   t:error(function() return coif.scene { head, filled, motion = head:motion { { time = 0 }, { time = 1 } } } end, "frames in a second")
 end)
+
+-- Locks that move by their posed states: the frames that are pictures.
+local locks = {
+  bun_and_tail = { 1, 14 },
+  many_locks   = { 1, 13 },
+  one_lock     = { 1, 10 },
+}
+local names = {}
+for name in pairs(locks) do
+  table.insert(names, name)
+end
+table.sort(names)
+for _, name in ipairs(names) do
+  coif.test(name, function(t)
+    local scene = t:run("../../examples/moving/" .. name .. ".lua", {})
+    local function apart(a, b)
+      return math.max(vector.magnitude(a.min - b.min), vector.magnitude(a.max - b.max))
+    end
+    local one, other = scene:at(locks[name][1]):stats(), scene:at(locks[name][2]):stats()
+    t:equal(one.triangles, other.triangles)
+    t:greater(apart(one, other), 0.5)
+    for _, frame in locks[name] do
+      t:preview(scene, "moving_" .. name .. "_" .. frame, { frame = frame, size = 120, views = { "back" } })
+    end
+  end)
+end

@@ -47,7 +47,8 @@ struct Shown {
 
 /// Watches until Ctrl-C.
 pub fn watch(arguments: &WatchArguments) -> u8 {
-    let options = run_options(&arguments.run);
+    // Strands are smooth at one sample too; what is kept is drawn by `coif run`.
+    let options = run_options(&arguments.run, 1);
     let pool = match barrier::pool(arguments.run.script.threads) {
         Ok(pool) => pool,
         Err(code) => return code,

@@ -52,7 +52,6 @@ impl MovingStrands {
 }
 
 /// Stylised hair at rest.
-#[allow(dead_code, reason = "for methods that move locks")]
 #[derive(Clone, Debug)]
 pub enum StillLocks {
     /// Tufts.

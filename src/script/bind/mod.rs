@@ -3,10 +3,13 @@
 //! Each file has the same shape: parameter structs, then `functions()` or `noun()`, then what they do. A binding reads
 //! its arguments strictly, calls the core, and gives the core's errors a place. This file is the table of contents.
 
+mod animate;
 mod clip;
 mod constants;
 mod deform;
 mod domain;
+mod dynamics;
+mod force;
 mod garment;
 mod golden;
 mod guides;
@@ -16,6 +19,7 @@ mod overlay;
 mod params;
 mod picture;
 mod piece;
+mod posed;
 mod region;
 mod scene;
 mod strands;
@@ -41,8 +45,10 @@ pub fn registry() -> Registry {
         params::functions(),
         head::functions(),
         domain::functions(),
+        force::functions(),
         tuft::functions(),
         piece::functions(),
+        animate::functions(),
         deform::functions(),
         garment::functions(),
         material::functions(),
@@ -54,7 +60,9 @@ pub fn registry() -> Registry {
         vec![region::noun(), guides::noun(), strands::noun()],
         clip::nouns(),
         domain::nouns(),
+        force::nouns(),
         tuft::nouns(),
+        vec![animate::noun()],
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
         deform::nouns(),
         vec![garment::noun()],

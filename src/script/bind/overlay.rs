@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::region::Area;
 use crate::deform::{Lattice, Pins, PointKind};
+use crate::dynamics::{Field, Force, Zone};
 use crate::geometry::slice::Outline;
 use crate::geometry::{OrientedBox, Root};
 use crate::groom::{Domain, Queue};
@@ -23,6 +24,10 @@ const ROOT: Colour = Colour::hex(0x5a_5f_69);
 const GRID: Colour = Colour::hex(0x8d_93_9c);
 /// Colour of tapes.
 const TAPE: Colour = Colour::hex(0xb5_7a_00);
+/// Colour of forces.
+const FORCE: Colour = Colour::hex(0x1f_7a_8c);
+/// Colour of what is pinned.
+const PIN: Colour = Colour::hex(0x2f_80_3b);
 /// Length of arrows, cm.
 const ARROW: f32 = 4.0;
 
@@ -114,6 +119,38 @@ pub fn pins(pins: &Pins) -> Overlay {
             out.arrows.push(Arrow { from: pin.at, to, colour });
         }
         out.markers.push(Marker { position: pin.to.unwrap_or(pin.at), colour, label });
+    }
+    out
+}
+
+/// Forces and what is pinned.
+pub fn forces(forces: &[Arc<Force>], pinned: &[Zone]) -> Overlay {
+    let mut out = Overlay::default();
+    let mut zone = |zone: &Zone, colour: Colour, label: String| match *zone {
+        Zone::Box(b) => out.boxes.push(wire(&b, colour, label)),
+        Zone::Ball { centre, radius } => out.spheres.push(WireSphere { centre, radius, colour, label }),
+    };
+    for pin in pinned {
+        zone(pin, PIN, "pinned".into());
+    }
+    for (i, force) in forces.iter().enumerate() {
+        if let Some(place) = &force.zone {
+            zone(place, FORCE, force.label(i));
+        }
+    }
+    for (i, force) in forces.iter().enumerate() {
+        let label = if force.zone.is_some() { String::new() } else { force.label(i) };
+        let (centre, radius, along) = match &force.field {
+            // The earth is everywhere.
+            Field::Gravity(_) | Field::Wind(_) => continue,
+            Field::Attractor(o) => (o.centre, o.radius, None),
+            Field::Repeller(o) => (o.centre, o.core, None),
+            Field::Vortex(o) => (o.centre, o.core, Some(o.axis.0)),
+        };
+        out.spheres.push(WireSphere { centre, radius: radius.max(0.2), colour: FORCE, label });
+        if let Some(axis) = along {
+            out.arrows.push(Arrow { from: centre - axis * ARROW, to: centre + axis * ARROW, colour: FORCE });
+        }
     }
     out
 }

@@ -99,6 +99,7 @@ pub fn noun() -> Noun {
         .sealed("the table of figures"),
     ];
     methods.extend(super::deform::strands_methods());
+    methods.extend(super::dynamics::methods());
     let getters = vec![Getter {
         name: "count",
         doc: "How many strands.",

@@ -8,11 +8,11 @@
 use std::ops::Range;
 
 use glam::Vec3;
-
-use super::step::Body;
-use crate::geometry::{Solid, Strands, Vicinity};
-use crate::task::{Cancelled, Task};
 use rayon::prelude::*;
+
+use super::slide::Body;
+use super::{Solid, Strands, Vicinity};
+use crate::task::{Cancelled, Task};
 
 /// Keeps strands out of a body.
 #[derive(Clone, Copy, Debug)]

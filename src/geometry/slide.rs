@@ -1,8 +1,8 @@
-//! One growth step against the body: collision, and sliding along the skin.
+//! One step of a growing or laid strand against a body: collision, and sliding along the skin.
 
 use glam::Vec3;
 
-use crate::geometry::{Solid, frames};
+use super::{Solid, frames};
 
 /// A body that growth ends keep out of, by a margin.
 #[derive(Clone, Copy, Debug)]
