@@ -5,6 +5,9 @@
 //! strand into the head. The equations are numbered as in the paper; `docs/methods/dynamics.md` tells of every departure
 //! from it.
 
+// Loops over the lanes index several rows at once; comparisons are negated so that NaN is refused.
+#![allow(clippy::needless_range_loop, clippy::neg_cmp_op_on_partial_ord)]
+
 mod acting;
 mod bend;
 mod error;

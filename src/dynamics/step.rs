@@ -66,7 +66,7 @@ pub struct Scratch {
 }
 
 /// Moves a packet through some steps.
-#[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
+#[multiversion(targets("x86_64+avx2"))]
 pub fn advance(packet: &mut Packet, moments: &[Moment], rules: &Rules, scratch: &mut Scratch) {
     scratch.before.resize(packet.nodes);
     scratch.force.resize(packet.nodes);
