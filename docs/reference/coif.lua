@@ -226,6 +226,9 @@ coif = {}
 ---@class coif.domain
 coif.domain = {}
 
+---@class coif.force
+coif.force = {}
+
 ---@class coif.material
 coif.material = {}
 
@@ -389,6 +392,104 @@ function coif.domain.natural(fields) end
 ---@param fields coif.queue.fields
 ---@return coif.Queue
 function coif.queue(fields) end
+
+---What `coif.ball` takes.
+---@class (exact) coif.ball.fields
+---@field centre coif.Point # Its middle. [cm]
+---@field radius number # Its radius. [cm; 0.01 to 1000]
+
+---A ball: a part of space for a force to act in, or to pin hair in.
+---@param fields coif.ball.fields
+---@return coif.Ball
+function coif.ball(fields) end
+
+---What `coif.force.gravity` takes.
+---@class (exact) coif.force.gravity.fields
+---@field strength? number # Acceleration. [cm/s^2; 0 to 1000000; default 981]
+---@field direction? coif.Direction # Where to. [default { 0, -1, 0 }]
+---@field zone? coif.Box|coif.Ball # The box or ball that it acts in; everywhere when left out.
+---@field edge? number # The way inside the zone's border over which it fades out; 0 ends at the border. [cm; 0 to 1000; default 0]
+---@field over_time? { number, number }[] | fun(time: number): number # Factors on the strength: pairs of a time in seconds and a factor, or a function from the time to the factor, asked 24 times a second for the first minute. In `settle` it has no say.
+---@field follows? boolean # True when it moves with the head. [default false]
+---@field name? string # What messages and the debug view call it.
+
+---A constant acceleration: gravity.
+---@param fields? coif.force.gravity.fields
+---@return coif.Force
+function coif.force.gravity(fields) end
+
+---What `coif.force.wind` takes.
+---@class (exact) coif.force.wind.fields
+---@field direction coif.Direction # Where to it blows.
+---@field strength? number # Mean acceleration. [cm/s^2; 0 to 1000000; default 500]
+---@field gust? number # How much gusts add and take, as a part of the strength: 0 blows evenly, 1 from calm to twice the strength. [0 to 3; default 0]
+---@field period? number # Mean time from gust to gust. [s; 0.05 to 100; default 1]
+---@field speed? number # How fast gusts travel. [cm/s; 1 to 100000; default 200]
+---@field seed? number # Another seed gives other gusts. [whole; default 0]
+---@field zone? coif.Box|coif.Ball # The box or ball that it acts in; everywhere when left out.
+---@field edge? number # The way inside the zone's border over which it fades out; 0 ends at the border. [cm; 0 to 1000; default 0]
+---@field over_time? { number, number }[] | fun(time: number): number # Factors on the strength: pairs of a time in seconds and a factor, or a function from the time to the factor, asked 24 times a second for the first minute. In `settle` it has no say.
+---@field follows? boolean # True when it moves with the head. [default false]
+---@field name? string # What messages and the debug view call it.
+
+---Wind: an acceleration in one direction, which may come in gusts. Gusts travel with the wind; in `settle` it
+---blows evenly.
+---@param fields coif.force.wind.fields
+---@return coif.Force
+function coif.force.wind(fields) end
+
+---What `coif.force.attractor` takes.
+---@class (exact) coif.force.attractor.fields
+---@field centre coif.Point # The point it draws to. [cm]
+---@field radius? number # Within this distance it does not act. [cm; 0 to 1000; default 1]
+---@field rim? number # The way outside of `radius` over which it comes to its full strength. [cm; 0 to 1000; default 0.5]
+---@field strength? number # Acceleration at 10 cm from the centre. [cm/s^2; 0 to 1000000; default 1000]
+---@field fall_off? "constant"|"proportional"|"inverse" # How it changes with the distance. [default "proportional"]
+---@field zone? coif.Box|coif.Ball # The box or ball that it acts in; everywhere when left out.
+---@field edge? number # The way inside the zone's border over which it fades out; 0 ends at the border. [cm; 0 to 1000; default 0]
+---@field over_time? { number, number }[] | fun(time: number): number # Factors on the strength: pairs of a time in seconds and a factor, or a function from the time to the factor, asked 24 times a second for the first minute. In `settle` it has no say.
+---@field follows? boolean # True when it moves with the head. [default false]
+---@field name? string # What messages and the debug view call it.
+
+---An attractor: hair farther than `radius` from the centre is drawn to it, the more the farther. It ties bundles.
+---@param fields coif.force.attractor.fields
+---@return coif.Force
+function coif.force.attractor(fields) end
+
+---What `coif.force.repeller` takes.
+---@class (exact) coif.force.repeller.fields
+---@field centre coif.Point # The point it drives away from. [cm]
+---@field core? number # Within this distance it weakens towards the centre, where it has no direction. [cm; 0.01 to 1000; default 1]
+---@field strength? number # Acceleration at 10 cm from the centre. [cm/s^2; 0 to 1000000; default 1000]
+---@field fall_off? "constant"|"proportional"|"inverse" # How it changes with the distance. [default "inverse"]
+---@field zone? coif.Box|coif.Ball # The box or ball that it acts in; everywhere when left out.
+---@field edge? number # The way inside the zone's border over which it fades out; 0 ends at the border. [cm; 0 to 1000; default 0]
+---@field over_time? { number, number }[] | fun(time: number): number # Factors on the strength: pairs of a time in seconds and a factor, or a function from the time to the factor, asked 24 times a second for the first minute. In `settle` it has no say.
+---@field follows? boolean # True when it moves with the head. [default false]
+---@field name? string # What messages and the debug view call it.
+
+---A repeller: hair is driven away from the centre, the less the farther. It keeps bundles fluffy.
+---@param fields coif.force.repeller.fields
+---@return coif.Force
+function coif.force.repeller(fields) end
+
+---What `coif.force.vortex` takes.
+---@class (exact) coif.force.vortex.fields
+---@field centre coif.Point # A point on the axis. [cm]
+---@field axis? coif.Direction # The axis; seen against its direction it turns anticlockwise. [default { 0, 1, 0 }]
+---@field core? number # Within this distance from the axis it weakens towards it. [cm; 0.01 to 1000; default 1]
+---@field strength? number # Acceleration at 10 cm from the axis. [cm/s^2; 0 to 1000000; default 1000]
+---@field fall_off? "constant"|"proportional"|"inverse" # How it changes with the distance from the axis. [default "inverse"]
+---@field zone? coif.Box|coif.Ball # The box or ball that it acts in; everywhere when left out.
+---@field edge? number # The way inside the zone's border over which it fades out; 0 ends at the border. [cm; 0 to 1000; default 0]
+---@field over_time? { number, number }[] | fun(time: number): number # Factors on the strength: pairs of a time in seconds and a factor, or a function from the time to the factor, asked 24 times a second for the first minute. In `settle` it has no say.
+---@field follows? boolean # True when it moves with the head. [default false]
+---@field name? string # What messages and the debug view call it.
+
+---A vortex: hair is swept around an axis. With an attractor on the axis it makes big curls.
+---@param fields coif.force.vortex.fields
+---@return coif.Force
+function coif.force.vortex(fields) end
 
 ---An elliptic tuft instead of a round one; then `diameter` and `peak` do nothing.
 ---@class (exact) coif.tuft.ellipse
@@ -555,6 +656,7 @@ function coif.path(fields) end
 ---@param fields coif.animate.fields
 ---@return coif.LocksClip
 function coif.animate(fields) end
+
 ---What `coif.lattice` takes.
 ---@class (exact) coif.lattice.fields
 ---@field around? coif.Garment|coif.Strands|coif.Tufts|coif.Piece|coif.Head|coif.Box|nil # What it goes around: a garment, hair, a head, or a box.
@@ -1090,6 +1192,59 @@ function Strands:lift(fields) end
 ---@return coif.Strands
 function Strands:carry(fields) end
 
+---What `Strands:settle` takes.
+---@class (exact) coif.Strands.settle.fields
+---@field limit? number # Simulated time after which it ends even if hair still moves. [s; 0.05 to 600; default 10]
+---@field rest_speed? number # The speed below which hair is at rest. [cm/s; 0.001 to 100; default 0.5]
+---@field forces? coif.Force[] # What acts on the hair; the earth's gravity when left out.
+---@field drag? number # How strongly the air brakes hair: the part of its speed that it loses in a second, at first. 10 in `settle` and 3 in `simulate` when left out. [1/s; 0 to 1000]
+---@field hold? number # How well hair keeps its shape: a strand of this length that sticks out level sags by a tenth of it under its own weight. Bare hair holds about 4 cm, with wax 10, with spray 20; 0 is limp. [cm; 0 to 1000; default 4]
+---@field clamped? boolean # True when roots keep their direction; otherwise strands hang from their roots as from a hinge. [default true]
+---@field collide? boolean # True when hair keeps out of the head. [default true]
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.05]
+---@field friction? number # How much hair sticks to the skin that it lies on: 0 slides freely. [0 to 10; default 0.3]
+---@field repulsion? number # How strongly hair that is crowded spreads: the acceleration where it gets thinner to a third over one `spacing`. [cm/s^2; 0 to 100000; default 0]
+---@field spacing? number # How near hair is crowded. [cm; 0.05 to 100; default 1]
+---@field steps? number # Steps in a second of simulated time. [1/s; 24 to 100000; default 240]
+---@field iterations? number # How often in a step segments are brought to their lengths. [whole; 1 to 100; default 2]
+---@field lengths? "exact"|"root_free" # How far a segment is from its length: with a square root, or without. [default "exact"]
+---@field solver? "chain"|"pairs" # How segments are brought to their lengths: all of a strand at once, or one after the other, which lets long strands stretch unless there are many `iterations`. [default "chain"]
+---@field seed? number # Another seed gives other gusts. [whole; default 0]
+---@field pinned? (coif.Box|coif.Ball)[] # Hair that lies in any of these at first is pinned to the head: a tie, a clasp.
+
+---Lets hair move under forces until it is at rest.
+---@param fields? coif.Strands.settle.fields
+---@return coif.Strands
+function Strands:settle(fields) end
+
+---What `Strands:simulate` takes.
+---@class (exact) coif.Strands.simulate.fields
+---@field duration? number # How long; as long as the motion when left out, and 2 s without one. [s; 0.02 to 3600]
+---@field rate? number # Frames in a second; as the motion when left out, and 24 without one. [1/s; 1 to 240]
+---@field balanced? boolean # True when the shape at first is the one that gravity leaves hair in: it moves only as wind and the head move it. With false it is the shape without weight, and hair first falls. [default true]
+---@field loop? boolean # True when the last frame goes over into the first; as the motion when left out.
+---@field forces? coif.Force[] # What acts on the hair; the earth's gravity when left out.
+---@field drag? number # How strongly the air brakes hair: the part of its speed that it loses in a second, at first. 10 in `settle` and 3 in `simulate` when left out. [1/s; 0 to 1000]
+---@field hold? number # How well hair keeps its shape: a strand of this length that sticks out level sags by a tenth of it under its own weight. Bare hair holds about 4 cm, with wax 10, with spray 20; 0 is limp. [cm; 0 to 1000; default 4]
+---@field clamped? boolean # True when roots keep their direction; otherwise strands hang from their roots as from a hinge. [default true]
+---@field collide? boolean # True when hair keeps out of the head. [default true]
+---@field margin? number # Least distance of hair from the skin. [cm; 0.005 to 10; default 0.05]
+---@field friction? number # How much hair sticks to the skin that it lies on: 0 slides freely. [0 to 10; default 0.3]
+---@field repulsion? number # How strongly hair that is crowded spreads: the acceleration where it gets thinner to a third over one `spacing`. [cm/s^2; 0 to 100000; default 0]
+---@field spacing? number # How near hair is crowded. [cm; 0.05 to 100; default 1]
+---@field steps? number # Steps in a second of simulated time. [1/s; 24 to 100000; default 240]
+---@field iterations? number # How often in a step segments are brought to their lengths. [whole; 1 to 100; default 2]
+---@field lengths? "exact"|"root_free" # How far a segment is from its length: with a square root, or without. [default "exact"]
+---@field solver? "chain"|"pairs" # How segments are brought to their lengths: all of a strand at once, or one after the other, which lets long strands stretch unless there are many `iterations`. [default "chain"]
+---@field seed? number # Another seed gives other gusts. [whole; default 0]
+---@field pinned? (coif.Box|coif.Ball)[] # Hair that lies in any of these at first is pinned to the head: a tie, a clasp.
+---@field motion? coif.Motion # What the head does meanwhile: `head:motion { ... }`.
+
+---Lets hair move under forces, and keeps every frame.
+---@param fields? coif.Strands.simulate.fields
+---@return coif.StrandsClip
+function Strands:simulate(fields) end
+
 ---Strands in motion: frames at equal distances in time. What takes strands takes them frame by frame.
 ---@class coif.StrandsClip
 ---@field count number # How many strands.
@@ -1293,6 +1448,14 @@ local Domain = {}
 ---Domains in stages; a stage acts when the one before it has let go.
 ---@class coif.Queue
 local Queue = {}
+
+---What moves hair in `settle` and `simulate`.
+---@class coif.Force
+local Force = {}
+
+---A part of space.
+---@class coif.Ball
+local Ball = {}
 
 ---Locks of stylised hair on a head.
 ---@class coif.Tufts
