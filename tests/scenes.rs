@@ -41,6 +41,7 @@ fn every_example_has_a_test_and_a_small_picture() {
     let tests = [
         ("examples", "examples_test.lua"),
         ("examples/cartoon", "cartoon_test.lua"),
+        ("examples/dynamics", "dynamics_test.lua"),
         ("examples/garments", "garments_test.lua"),
         ("examples/moving", "moving_test.lua"),
     ];

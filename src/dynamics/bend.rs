@@ -12,12 +12,16 @@
 //! Such springs would need tens of thousands of explicit steps a second. They are solved for implicitly instead: a
 //! place that inertia alone has led to, x + v h, is moved on by
 //!
-//!     u = (1 + h^2 K)^-1 h^2 (a + F),      K = c sum_k R_k^T R_k,      h^2 F = c sum_k R_k^T T_k
+//! ```text
+//! u = (1 + h^2 K)^-1 h^2 (a + F),      K = c sum_k R_k^T R_k,      h^2 F = c sum_k R_k^T T_k
+//! ```
 //!
 //! with a the acceleration of the force objects and F that of the springs at that place. R_k is how segment k turns
 //! away from its T when nodes k-2, k-1 and k move,
 //!
-//!     R_k = P_k (d'_k - Q_k d'_(k-1)),     P_k = 1 - d d^T / D,     Q_k v = (v (d . T) - d (v . T)) / D
+//! ```text
+//! R_k = P_k (d'_k - Q_k d'_(k-1)),     P_k = 1 - d d^T / D,     Q_k v = (v (d . T) - d (v . T)) / D
+//! ```
 //!
 //! with d in Q_k that of segment k-1. Where hair is at rest u vanishes only with a + F. K is symmetric and goes from node
 //! to node in blocks of three by three, two off the diagonal: the system is solved exactly, from root to tip and back.

@@ -5,7 +5,9 @@
 //! that converges slowly. The chain form asks for the correction of all segments together: with node k moved by
 //! mu_(k+1) e_(k+1) - mu_k e_k, every segment changes by -f d to first order when
 //!
-//!     (w_(k-1) + w_k) d_k . e_k mu_k  -  w_(k-1) d_k . e_(k-1) mu_(k-1)  -  w_k d_k . e_(k+1) mu_(k+1)  =  f_k D_k
+//! ```text
+//! (w_(k-1) + w_k) d_k . e_k mu_k  -  w_(k-1) d_k . e_(k-1) mu_(k-1)  -  w_k d_k . e_(k+1) mu_(k+1)  =  f_k D_k
+//! ```
 //!
 //! with w = 1 for a node that moves and 0 for a pinned one: a tridiagonal system, solved exactly from root to tip and
 //! back. Without its off-diagonals it is the paper's correction. The directions e are those of the segments at the

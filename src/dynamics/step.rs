@@ -2,8 +2,10 @@
 //!
 //! With a(t) the acceleration of the force objects, v(t) the velocity and h the step,
 //!
-//!     x(t+h) = x + v h + a h^2 / 2                                            (4)
-//!     v(t+h) = v + (a(t) + a(t+h)) h / 2                                      (5)
+//! ```text
+//! x(t+h) = x + v h + a h^2 / 2                                            (4)
+//! v(t+h) = v + (a(t) + a(t+h)) h / 2                                      (5)
+//! ```
 //!
 //! A step begins with the second half of (5) of the step before it, so a is asked for once a step. The air takes its
 //! part of the velocity between the two halves, exactly, which keeps the second order. What bending, lengths and the head

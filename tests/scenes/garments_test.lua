@@ -1,6 +1,10 @@
 -- Garments: every example with a golden picture; girths to a tenth of a millimetre; nothing in the body.
 
-local examples = { held_back = "left", waist = "front", wardrobe = "front" }
+local examples = {
+  held_back = "left",
+  waist     = "front",
+  wardrobe  = "front",
+}
 
 local names = {}
 for name in pairs(examples) do

@@ -212,9 +212,8 @@ pub(super) fn tidy(toon: &Toon, drops: &mut [Vec<Drop>], width: usize) {
         }
     }
     let mut bounds: Vec<[u32; 4]> = cells.iter().map(|&(y, x)| [y, x, y, x]).collect();
-    for i in 0..cells.len() {
-        let (first, (y, x)) = (find(&mut leader, i), cells[i]);
-        let b = &mut bounds[first];
+    for (i, &(y, x)) in cells.iter().enumerate() {
+        let b = &mut bounds[find(&mut leader, i)];
         *b = [b[0].min(y), b[1].min(x), b[2].max(y), b[3].max(x)];
     }
     let short = SHORT * width as f32 / cell;

@@ -304,21 +304,22 @@ impl Toon {
                     let mut even = true;
                     for j in 0..per_pixel {
                         let from = first + j * drawn.width;
-                        for i in from..from + per_pixel {
-                            even &= shaded.samples[i] == word && wet[i] == 0;
-                        }
+                        let row = from..from + per_pixel;
+                        even &=
+                            shaded.samples[row.clone()].iter().all(|s| *s == word) && wet[row].iter().all(|w| *w == 0);
                     }
                     if !(even && word == flat) {
                         let mut sum = Vec3::ZERO;
                         for j in 0..per_pixel {
                             let from = first + j * drawn.width;
-                            for i in from..from + per_pixel {
-                                let (mut colour, there) = shade::unpack(shaded.samples[i]);
+                            let row = from..from + per_pixel;
+                            for (&sample, &wet) in shaded.samples[row.clone()].iter().zip(&wet[row]) {
+                                let (mut colour, there) = shade::unpack(sample);
                                 if there == 0.0 {
                                     colour = paper.background;
                                 }
-                                if wet[i] != 0 {
-                                    let (wetness, ink) = self.wet(wet[i]);
+                                if wet != 0 {
+                                    let (wetness, ink) = self.wet(wet);
                                     colour = colour.lerp(ink, wetness);
                                 }
                                 sum += colour;

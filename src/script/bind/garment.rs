@@ -223,10 +223,7 @@ fn look(fields: &ClothLook) -> MeshMaterial {
 }
 
 /// A piece of the library.
-fn made<P: Params>(call: &Call, build: fn(&P) -> Garment) -> Result<Value>
-where
-    P: std::fmt::Debug,
-{
+fn made<P: Params + std::fmt::Debug>(call: &Call, build: fn(&P) -> Garment) -> Result<Value> {
     let (options, extras) = call.read_both::<P, ClothLook>()?;
     let mut key = Digest::new("garment 1");
     key.bytes(P::NAME.as_bytes()).data(&options);
@@ -472,13 +469,12 @@ fn clear(call: &Call) -> Result<Value> {
         return Err(call.problem_at("body", message, None));
     };
     let mut key = this.key("clear 1");
-    match &fields.body {
-        Value::Handle(h) => match (h.get::<Cloth>(), h.get::<Head>()) {
+    if let Value::Handle(h) = &fields.body {
+        match (h.get::<Cloth>(), h.get::<Head>()) {
             (Some(cloth), _) => cloth.garment.mesh.digest(&mut key),
             (None, Some(head)) => _ = key.key(head.key()),
             (None, None) => {}
-        },
-        _ => {}
+        }
     }
     key.floats(&[fields.margin]);
     let garment = call.memo(&key, || {
