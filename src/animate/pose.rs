@@ -25,8 +25,8 @@ const MOST_ITERATIONS: u32 = 60;
 /// What a weight beyond the states costs: its distance from 0..=1, squared, times this. A residual of a tenth is a hundredth
 /// squared, so a weight of 2 is taken for that, but not one of 6.
 const BLENDING: f64 = 0.01;
-/// A frame further than this from its blend is looked for from every state too, and the other place is taken when its energy
-/// is less than a quarter: going on from frame to frame may end where the states do not lead.
+/// A frame further than this from its blend is looked for from the nearest state too, and that is taken when its energy is
+/// less than a quarter: going on from frame to frame may end where the states do not lead.
 const SUSPECT: f64 = 0.15;
 /// Keeps the small system solvable where weights make no difference: states that are alike.
 const FLOOR: f64 = 1e-9;
@@ -109,41 +109,74 @@ impl<'a> Poser<'a> {
     pub fn pose(&mut self, targets: &[Vec3], out: &mut [Vec3]) -> Posed {
         assert_eq!((targets.len(), out.len()), (self.rig.handles(), self.rig.rest.len()));
         self.fix(targets);
-        let mut iterations = 0;
-        let (mut best, mut warm) = (None, None);
-        if let Some(start) = self.warm() {
-            let descent = self.descend(start);
-            iterations += descent.iterations;
-            let suspect = self.residual(&descent) > SUSPECT;
-            match descent.converged {
-                true if suspect => warm = Some(descent),
-                true => best = Some(descent),
-                false => {}
+        let warm = self.warm().map(|start| self.descend(start));
+        let (best, is_new) = match warm {
+            Some(warm) if !warm.converged => (self.search(warm.iterations), true),
+            Some(warm) if self.residual(&warm) > SUSPECT => self.doubted(warm, targets),
+            Some(warm) => (warm, false),
+            None => (self.search(0), true),
+        };
+        self.write(targets, out);
+        // Where the search began anew, the frame before it leads nowhere.
+        let before = if is_new { None } else { self.weights[0].take() };
+        self.weights = [Some(best.weights.clone()), before];
+        let residual = self.residual(&best);
+        let Descent { weights, iterations, step, converged, .. } = best;
+        Posed { weights, iterations, residual, step, converged }
+    }
+
+    /// The weights that show a state, 0 being the rest.
+    fn showing(&self, state: usize) -> Vec<f64> {
+        (0..self.rig.states).map(|e| if e + 1 == state { 1.0 } else { 0.0 }).collect()
+    }
+
+    /// The best of the descents from every state, after so many iterations that led nowhere.
+    fn search(&mut self, before: u32) -> Descent {
+        let mut best: Option<Descent> = None;
+        let mut iterations = before;
+        let mut is_last = true;
+        for state in 0..=self.rig.states {
+            let found = self.descend(self.showing(state));
+            iterations += found.iterations;
+            let better = best.as_ref().is_none_or(|b| {
+                found.converged && !b.converged || found.converged == b.converged && found.energy < b.energy
+            });
+            is_last = better;
+            if better {
+                best = Some(found);
             }
         }
-        let best = best.unwrap_or_else(|| {
-            let states = self.rig.states;
-            let start = |i: usize| (0..states).map(|e| if e + 1 == i { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
-            let descents: Vec<Descent> = (0..=states).map(|i| self.descend(start(i))).collect();
-            iterations += descents.iter().map(|d| d.iterations).sum::<u32>();
-            let better = |a: &Descent, b: &Descent| b.converged.cmp(&a.converged).then(a.energy.total_cmp(&b.energy));
-            let last = descents.len() - 1;
-            let (at, best) =
-                descents.into_iter().enumerate().min_by(|a, b| better(&a.1, &b.1)).unwrap_or_else(|| unreachable!());
-            let best = match warm {
-                Some(warm) if best.energy > 0.25 * warm.energy => warm,
-                _ if at == last => return best,
-                _ => best,
-            };
+        let mut best = best.unwrap_or_else(|| unreachable!("there is at least the rest"));
+        if !is_last {
             // The places are those of the last descent: go to the best once more.
-            let again = self.descend(best.weights);
-            iterations += again.iterations;
-            again
-        });
-        self.write(targets, out);
-        self.weights = [Some(best.weights.clone()), self.weights[0].take()];
-        let residual = self.residual(&best);
-        Posed { weights: best.weights, iterations, residual, step: best.step, converged: best.converged }
+            best = self.descend(best.weights);
+            iterations += best.iterations;
+        }
+        Descent { iterations, ..best }
+    }
+
+    /// A frame far from its blend, and the descent from the state whose handles are nearest, when that state as it is would
+    /// do better already: of the two the new one when it is clearly better, and whether it is.
+    fn doubted(&mut self, warm: Descent, targets: &[Vec3]) -> (Descent, bool) {
+        let rig = self.rig;
+        let off = |state: usize| -> f32 {
+            let places =
+                targets.iter().enumerate().filter_map(|(h, t)| Some(rig.handle_at(h, state)?.distance_squared(*t)));
+            places.sum()
+        };
+        let nearest = (0..=rig.states).min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0);
+        let start = self.showing(nearest);
+        let kept = self.x.clone();
+        let mut iterations = warm.iterations + 1;
+        if self.evaluate(&start).energy < warm.energy {
+            let other = self.descend(start);
+            iterations += other.iterations;
+            if other.converged && other.energy < 0.25 * warm.energy {
+                return (Descent { iterations, ..other }, true);
+            }
+        }
+        self.x = kept;
+        (Descent { iterations, ..warm }, false)
     }
 
     fn residual(&self, found: &Descent) -> f64 {
