@@ -3,7 +3,6 @@
 use glam::Vec3;
 
 use super::*;
-use crate::deform::{Band, outline};
 use crate::geometry::bvh::tests::sphere;
 use crate::geometry::{Solid, slice};
 use crate::params::{Params, Table, Value, read};
@@ -28,8 +27,8 @@ fn girth(garment: &Garment, name: &str) -> f32 {
     let tape = garment.tape(name).unwrap();
     let there: Vec<String> = tape.parts.iter().filter(|p| garment.mesh.group(p).is_some()).cloned().collect();
     let part = garment.triangles(&there);
-    let band = Band { name: name.into(), height: tape.height, low: 0.0, high: 0.0, side: tape.side, part };
-    outline(&garment.mesh, &band).unwrap().tape()
+    let outlines = slice::cut(&garment.mesh, tape.height, |t| part.is_empty() || part.contains(&t));
+    slice::outline(&outlines, tape.side).unwrap().tape()
 }
 
 /// Borders of the surface: edges of one triangle, by place.
