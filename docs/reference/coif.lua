@@ -1861,7 +1861,7 @@ function Garment:tape(fields) end
 ---@field power? number # How sharply the hold falls off: the exponent of the affinity. [0.5 to 8; default 2]
 ---@field reach? number # How far above and below a tape the cloth may move, at most. [cm; 1 to 100; default 18]
 ---@field soft? number # How far sewn-on parts follow. [cm; 0.1 to 50; default 8]
----@field [string] number # What the tape of that name shall read, cm. [cm]
+---@field [string] number|string|coif.Point[] # What the tape of that name shall read, cm. [cm]
 
 ---Finds the motion of control points that makes tapes read what is wanted, each to a tenth of a millimetre:
 ---`garment:fit { waist = 67 }`. The rest is held: nothing moves beyond the tapes above and below.

@@ -323,7 +323,9 @@ fn tape(call: &Call) -> Result<Value> {
 fn fit_fields() -> Vec<crate::params::Field> {
     let doc = "What the tape of that name shall read, cm.";
     let mut fields = FitFields::fields();
-    fields.push(crate::params::Field::new::<Option<f32>>("girth", doc).any_name().unit("cm"));
+    fields.push(
+        crate::params::Field::new::<Option<f32>>("girth", doc).any_name().unit("cm").takes("number|string|Point[]"),
+    );
     fields
 }
 
