@@ -5,19 +5,22 @@
 //! Printed are median and 95th percentile of the wall clock, and the processor time per round (all threads together),
 //! which other programs on the machine disturb least; and beside them the time of filling the picture's bytes.
 //!
-//! `cargo bench --bench cartoon -- [ROUNDS] [SAMPLES]`; SAMPLES per pixel and side, 2 as `coif watch` draws.
+//! `cargo bench --bench cartoon -- [ROUNDS] [SAMPLES]`; SAMPLES per pixel and side, 2 as `coif run` draws; `coif watch` draws 1.
 
 use std::hint::black_box;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use coif::export::{Format, StrandForm};
 use coif::render::SheetOptions;
 use coif::scene::View;
-use coif::script::{Disk, Options, Origin};
+use coif::script::{Disk, Options};
 use coif::task::Task;
 use coif::workbench::{self, Films, Report, RunOptions};
+
+mod timing;
+
+use timing::{ms, processor_time, tell};
 
 const SCRIPTS: [(&str, &str); 2] = [
     ("twin_tails", include_str!("../examples/cartoon/twin_tails.lua")),
@@ -108,25 +111,4 @@ fn round(options: &RunOptions, text: &str) -> (Duration, Duration, Report) {
     let time = started.elapsed();
     assert!(report.written.is_ok(), "{:?} {:?}", report.written, report.outcome.diagnostics);
     (time, processor_time().saturating_sub(before), report)
-}
-
-/// Where the time went.
-fn tell(report: &Report) {
-    let mark = |origin: Option<Origin>| origin.map_or(String::new(), |o| format!(" {}", o.text()));
-    let calls = report.outcome.timings.iter().map(|t| format!("{} {}{}", t.what, ms(t.time), mark(t.origin)));
-    let stages = report.stages.iter().map(|s| format!("{} {}{}", s.what, ms(s.time), mark(s.origin)));
-    println!("    {}", stages.chain(calls).collect::<Vec<_>>().join(", "));
-}
-
-fn ms(time: Duration) -> String {
-    format!("{:.1} ms", time.as_secs_f64() * 1e3)
-}
-
-/// Processor time of this process so far, in hundredths of a second; zero where the system does not tell it.
-fn processor_time() -> Duration {
-    let text = std::fs::read_to_string(Path::new("/proc/self/stat")).unwrap_or_default();
-    // The second field is a name in brackets, which may contain anything; user and system time are the 14th and 15th.
-    let after = text.rsplit(')').next().unwrap_or_default();
-    let ticks: u64 = after.split_whitespace().skip(11).take(2).filter_map(|n| n.parse::<u64>().ok()).sum();
-    Duration::from_millis(ticks * 10)
 }

@@ -73,9 +73,11 @@ fn long(count: usize) -> Strands {
     strands
 }
 
-fn scene(count: usize) -> Scene {
-    let strands = Arc::new(long(count));
+/// One in `thinned` of the strands, each drawn as much wider.
+fn scene(thinned: usize) -> Scene {
+    let strands = Arc::new(long(STRANDS / thinned));
     let material = HairMaterial::default();
+    let material = HairMaterial { width: material.width * thinned as f32, ..material };
     let hair = Hair { guides: strands.clone(), strands, material, overlay: Arc::new(Overlay::default()) };
     let head = Body::Mesh(Arc::new(egg()), MeshMaterial::default());
     Scene {
@@ -100,9 +102,9 @@ fn options() -> SheetOptions {
 #[divan::bench(sample_count = 5, args = ["whole", "draft", "2 x 2 samples"])]
 fn sheet(bencher: Bencher, how: &str) {
     let (scene, options) = match how {
-        "draft" => (scene(STRANDS / THINNED), SheetOptions { strand_width: THINNED as f32, ..options() }),
-        "whole" => (scene(STRANDS), options()),
-        _ => (scene(STRANDS), SheetOptions { supersample: 2, ..options() }),
+        "draft" => (scene(THINNED), options()),
+        "whole" => (scene(1), options()),
+        _ => (scene(1), SheetOptions { supersample: 2, ..options() }),
     };
     bencher.bench_local(|| render::sheet(&scene, &options, &Task::new()).expect("a picture"));
 }
@@ -110,7 +112,7 @@ fn sheet(bencher: Bencher, how: &str) {
 /// Coding the sheet as PNG, for watching and for keeping.
 #[divan::bench(sample_count = 5, args = [Speed::Fast, Speed::Balanced])]
 fn png(bencher: Bencher, speed: Speed) {
-    let picture = render::sheet(&scene(STRANDS), &options(), &Task::new()).expect("a picture");
+    let picture = render::sheet(&scene(1), &options(), &Task::new()).expect("a picture");
     bencher.bench_local(|| render::png::encode(&picture, speed).expect("a file"));
 }
 
@@ -130,7 +132,7 @@ fn memory(bencher: Bencher) {
 
 /// Times per step, summed over the views: the least of three runs.
 fn breakdown() {
-    let scene = scene(STRANDS);
+    let scene = scene(1);
     let mut best: Option<(Duration, BTreeMap<String, Duration>)> = None;
     for _ in 0..3 {
         let steps = Arc::new(Mutex::new((Instant::now(), String::new(), BTreeMap::new())));

@@ -617,7 +617,7 @@ function coif.ring(fields) end
 ---@field states? integer[] # The same as numbers of states: the handle passes where it is in each; 1 is the rest.
 ---@field frames? number # How many frames it takes. [whole; 1 to 100000; default 40]
 ---@field curve? "spline"|"line" # What joins the points. [default "spline"]
----@field ease? "linear"|"in"|"out"|"smooth" # How speed changes on the way; with `times`, from each point to the next. [default "linear"]
+---@field ease? "smooth"|"linear"|"in"|"out"|"hold" # How speed changes on the way; with `times`, from each point to the next. [default "linear"]
 ---@field times? number[] # When each point is passed, rising, in any unit: the first is the first frame, the last the last. Without them speed is even but for `ease`. A closed path has one more, for the way back to its first point.
 ---@field closed? boolean # Leads from the last point on to the first. [default false]
 ---@field back? boolean # Turns round at the last point and comes back the same way. [default false]

@@ -25,6 +25,6 @@ pub use clip::{Animation, animate, animate_all};
 pub use error::AnimateError;
 pub use feature::MOST_STATES;
 pub use follow::{Lag, carried, lagging};
-pub use path::{Ease, PathCurve, PathOptions};
+pub use path::{PathCurve, PathOptions};
 pub use pose::{Posed, Poser, TOLERANCE};
 pub use rig::Rig;

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use glam::Vec3;
 
 use super::AnimateError;
+use crate::geometry::Ease;
 use crate::geometry::curve::catmull_rom;
 
 crate::choices! {
@@ -14,32 +15,6 @@ crate::choices! {
         Spline = "spline",
         /// Straight lines from point to point.
         Line = "line",
-    }
-}
-
-crate::choices! {
-    /// How speed changes along a path, or between two timed points of it.
-    pub enum Ease {
-        /// Even speed.
-        Linear = "linear",
-        /// From rest, faster and faster.
-        In = "in",
-        /// Slower and slower, to rest.
-        Out = "out",
-        /// From rest to rest.
-        Smooth = "smooth",
-    }
-}
-
-impl Ease {
-    /// How much of the way is gone after the part `t` of the time, both 0..=1.
-    pub fn at(self, t: f32) -> f32 {
-        match self {
-            Self::Linear => t,
-            Self::In => t * t,
-            Self::Out => t * (2.0 - t),
-            Self::Smooth => t * t * (3.0 - 2.0 * t),
-        }
     }
 }
 

@@ -8,8 +8,7 @@ use super::world::Hair;
 use crate::geometry::clear::{Outcome, Scratch};
 use crate::geometry::{Clear, Strands, slide};
 
-/// The strands as they are now, and how many could not be kept out of the head. `pose` is where the head is; without
-/// `in_place` the strands are as seen from it.
+/// The strands as they are now, and how many could not be kept out of the head. `pose` is where the head is.
 pub fn frame(hair: &Hair, packets: &[Packet], pose: &Affine3A) -> (Strands, usize) {
     let mut strands = hair.strands.clone();
     unpack(packets, &strands.offsets, &mut strands.points);

@@ -43,7 +43,7 @@ pub use error::HeadError;
 pub use landmarks::Landmarks;
 pub use mask::Mask;
 pub use matching::matching;
-pub use motion::{Ease, HeadMotion, MOST_FRAMES, MotionError, MotionOptions, Pose};
+pub use motion::{HeadMotion, MOST_FRAMES, MotionError, MotionOptions, Pose};
 pub use parting::{Parting, PartingError};
 pub use region::{Region, RegionError};
 pub use roots::{MOST_ROOTS, RootsError, roots, roots_by_density};

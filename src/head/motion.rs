@@ -3,7 +3,7 @@
 use glam::{Affine3A, Mat3, Vec3};
 
 use super::Head;
-use crate::geometry::Clip;
+use crate::geometry::{Clip, Ease};
 use crate::params::{Angle, Object};
 
 /// The joint of the neck, from the middle between the ears, cm of an adult's head: about where the skull stands on the
@@ -15,41 +15,6 @@ pub const MOST_FRAMES: usize = 100_000;
 
 /// How far the end of a loop may lie from its beginning, as a part of a turn or in cm.
 const CLOSED: f32 = 1e-4;
-
-crate::choices! {
-    /// How a motion goes from one pose to the next.
-    pub enum Ease {
-        /// Starts and ends softly.
-        Smooth = "smooth",
-        /// At one speed.
-        Linear = "linear",
-        /// Starts softly.
-        In = "in",
-        /// Ends softly.
-        Out = "out",
-        /// Stays, and jumps at the end.
-        Hold = "hold",
-    }
-}
-
-impl Ease {
-    /// How much of the way is done when the part `t` (0 to 1) of the time is over.
-    pub fn at(self, t: f32) -> f32 {
-        match self {
-            Self::Smooth => t * t * (3.0 - 2.0 * t),
-            Self::Linear => t,
-            Self::In => t * t,
-            Self::Out => t * (2.0 - t),
-            Self::Hold => {
-                if t < 1.0 {
-                    0.0
-                } else {
-                    1.0
-                }
-            }
-        }
-    }
-}
 
 crate::params! {
     /// A pose of the head at a time.

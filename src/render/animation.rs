@@ -6,7 +6,7 @@ use glam::{Mat3, Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::camera::{self, Framing, frame};
-use super::png::{PngError, Speed};
+use super::png::{PngError, Speed, encoder};
 use super::sheet::{Picture, RenderError, SheetOptions, views};
 use crate::scene::{Scene, Timeline};
 use crate::task::{Cancelled, Task};
@@ -102,14 +102,7 @@ pub fn encode(pictures: &[Picture], rate: f32, speed: Speed) -> Result<Vec<u8>, 
     let (width, height) = pictures.first().map_or((0, 0), |p| (p.width, p.height));
     let mut bytes = Vec::new();
     let written = (|| {
-        let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
-        encoder.set_color(::png::ColorType::Rgb);
-        encoder.set_depth(::png::BitDepth::Eight);
-        encoder.set_source_srgb(::png::SrgbRenderingIntent::Perceptual);
-        encoder.set_compression(match speed {
-            Speed::Fast => ::png::Compression::Fast,
-            Speed::Balanced => ::png::Compression::Balanced,
-        });
+        let mut encoder = encoder(&mut bytes, (width, height), speed);
         encoder.set_animated(pictures.len() as u32, 0)?;
         let (seconds, parts) = delay(rate);
         encoder.set_frame_delay(seconds, parts)?;

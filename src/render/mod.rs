@@ -1,15 +1,17 @@
 //! Pictures of a scene: orthographic views on one sheet.
 //!
 //! [`sheet()`] does everything; it sees only a [`Scene`](crate::scene::Scene). The way of the data: [`camera`] frames the
-//! views; [`shadow`] finds how much light reaches each place; [`surface`] draws the head, [`toon`] draws it in flat tones with ink lines; [`strands`] projects and
-//! simplifies the hair, [`raster`] lays it down front to back, [`shade`] gives it colour; [`overlay`] makes the debug
-//! view; [`lettering`] writes; [`png`] codes. [`mod@contact`] lays pictures out,
-//! [`animation`] draws scenes that move frame by frame, [`mod@strip`] sets some of the frames side by side, [`mod@compare`] tells how far two differ.
+//! views; [`shadow`] and [`depths`] find how much light reaches each place; [`surface`] draws the head, [`toon`] draws it in
+//! flat tones with ink lines; [`strands`] projects and simplifies the hair, [`veil`] leaves out what is hidden, [`raster`]
+//! lays the rest down front to back by [`tiles`], [`shade`] gives it colour; [`overlay`] makes the debug view;
+//! [`lettering`] writes; [`png`] codes. [`mod@contact`] lays pictures out, [`animation`] draws scenes that move frame by
+//! frame, [`mod@strip`] sets some of the frames side by side, [`mod@compare`] tells how far two differ.
 
 pub mod animation;
 pub mod camera;
 pub mod compare;
 pub mod contact;
+pub mod depths;
 pub mod fast;
 pub mod lettering;
 pub mod overlay;

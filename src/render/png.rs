@@ -33,7 +33,22 @@ pub enum PngError {
 pub fn encode(picture: &Picture, speed: Speed) -> Result<Vec<u8>, PngError> {
     let mut bytes = Vec::new();
     let (width, height) = (picture.width, picture.height);
-    let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
+    let written = (|| {
+        let mut writer = encoder(&mut bytes, (width, height), speed).write_header()?;
+        writer.write_image_data(&picture.pixels)?;
+        writer.finish()
+    })();
+    written.map_err(|source| PngError::Coding { width, height, source })?;
+    Ok(bytes)
+}
+
+/// An encoder of sRGB pictures of a size, still or animated.
+pub(super) fn encoder(
+    bytes: &mut Vec<u8>,
+    (width, height): (u32, u32),
+    speed: Speed,
+) -> ::png::Encoder<'_, &mut Vec<u8>> {
+    let mut encoder = ::png::Encoder::new(bytes, width, height);
     encoder.set_color(::png::ColorType::Rgb);
     encoder.set_depth(::png::BitDepth::Eight);
     encoder.set_source_srgb(::png::SrgbRenderingIntent::Perceptual);
@@ -41,13 +56,7 @@ pub fn encode(picture: &Picture, speed: Speed) -> Result<Vec<u8>, PngError> {
         Speed::Fast => ::png::Compression::Fast,
         Speed::Balanced => ::png::Compression::Balanced,
     });
-    let written = (|| {
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&picture.pixels)?;
-        writer.finish()
-    })();
-    written.map_err(|source| PngError::Coding { width, height, source })?;
-    Ok(bytes)
+    encoder
 }
 
 /// Most pixels of a picture that is read back.

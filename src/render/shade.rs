@@ -14,8 +14,9 @@ use crate::scene::{HairMaterial, MeshMaterial};
 use crate::task::{Cancelled, Task};
 
 use super::camera::Camera;
+use super::depths::Depths;
 use super::fast;
-use super::shadow::{Density, Depths, Grid, Lights, openness, transmittance};
+use super::shadow::{Density, Grid, Lights, openness, transmittance};
 
 /// A lamp far away.
 #[derive(Clone, Debug)]

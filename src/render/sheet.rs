@@ -43,16 +43,13 @@ pub struct SheetOptions {
     pub columns: Option<u32>,
     /// Samples per pixel along each side, 1 to 4: 1 while watching, 2 for a picture that is kept.
     pub supersample: u32,
-    /// Width of a drawn strand as a multiple of its own, 1 to 64: hair thinned out to one strand in eight looks as dense as
-    /// the whole when each is drawn eight times as wide.
-    pub strand_width: f32,
     /// Names, figures and a scale bar around the views.
     pub lettering: bool,
 }
 
 impl Default for SheetOptions {
     fn default() -> Self {
-        Self { width: 640, height: 720, columns: None, supersample: 2, strand_width: 1.0, lettering: true }
+        Self { width: 640, height: 720, columns: None, supersample: 2, lettering: true }
     }
 }
 
@@ -73,12 +70,6 @@ pub enum RenderError {
         least: u32,
         /// Most allowed.
         most: u32,
-    },
-    /// A strand width that is not between its limits.
-    #[error("a strand width of `{value}` is not between 1 and {MOST_WIDTH}")]
-    StrandWidth {
-        /// Its value.
-        value: f32,
     },
     /// All views together are too many pixels.
     #[error("a sheet of {width} x {height} pixels is more than the {most} million that fit in memory")]
@@ -102,9 +93,6 @@ fn fade(scene: &Scene) -> f32 {
 
 /// Most pixels of a sheet, in millions.
 pub(super) const MOST_PIXELS: u64 = 200;
-
-/// Largest multiple of a strand's width.
-const MOST_WIDTH: f32 = 64.0;
 
 /// Where everything stands on the sheet, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,9 +124,6 @@ impl Layout {
             if value < least || value > most {
                 return Err(RenderError::Size { what, value, least, most });
             }
-        }
-        if !(1.0..=MOST_WIDTH).contains(&options.strand_width) {
-            return Err(RenderError::StrandWidth { value: options.strand_width });
         }
         let n = views.max(1) as u32;
         let columns = options.columns.unwrap_or(match n {
@@ -207,7 +192,7 @@ pub fn sheet(scene: &Scene, options: &SheetOptions, task: &Task) -> Result<Pictu
     let layout = Layout::new(views.len(), options)?;
     let paper = paper(scene.look.background);
     task.progress("density", 0.0);
-    let stage = Stage::new(scene, options.strand_width, task)?;
+    let stage = Stage::new(scene, task)?;
     task.progress("framing", 0.0);
     let sights: Vec<Mat3> = views.iter().map(|&view| axes(view)).collect();
     let framing = frame(scene, &sights);
@@ -251,7 +236,7 @@ pub fn views(
 ) -> Result<Vec<Picture>, RenderError> {
     Layout::new(sights.len(), &SheetOptions { lettering: false, columns: None, ..*options })?;
     let paper = paper(scene.look.background);
-    let stage = Stage::new(scene, options.strand_width, task)?;
+    let stage = Stage::new(scene, task)?;
     let own = if framing.is_none() { Some(frame(scene, sights)) } else { None };
     let Some(framing) = framing.or(own.as_ref()) else { return Ok(vec![]) };
     let steps = Steps { task, done: AtomicUsize::new(0), all: STEPS * sights.len() };
@@ -325,7 +310,7 @@ struct Stage {
 }
 
 impl Stage {
-    fn new(scene: &Scene, strand_width: f32, task: &Task) -> Result<Self, Cancelled> {
+    fn new(scene: &Scene, task: &Task) -> Result<Self, Cancelled> {
         let mut meshes = Vec::new();
         // Flat tones need neither shadows in hair nor a sky.
         if scene.look.shading == Shading::Toon && !scene.look.debug {
@@ -355,7 +340,7 @@ impl Stage {
             .hair()
             .filter(|_| !scene.look.debug)
             .map(|(_, h)| {
-                let width = h.material.width * strand_width;
+                let width = h.material.width;
                 (&*h.strands, width, width * h.material.taper)
             })
             .collect();
@@ -399,7 +384,7 @@ impl Stage {
         let drawing = scene.look.debug.then(|| overlay::draw(scene, camera, pen));
         let mut bundles: Vec<Bundle> = match &drawing {
             Some(drawing) => drawing.wires.iter().map(|w| w.bundle(ss as f32)).collect(),
-            None => scene.hair().map(|(_, hair)| bundle(hair, fine.scale * options.strand_width)).collect(),
+            None => scene.hair().map(|(_, hair)| bundle(hair, fine.scale)).collect(),
         };
         let flat: Vec<Vec<Vec3>> = match &self.toon {
             Some(toon) => scene.hair().map(|(_, hair)| toon.strands(hair, &fine)).collect(),
@@ -570,6 +555,13 @@ fn figures(scene: &Scene) -> String {
     if count > 0 {
         let mean = total / count as f64;
         words.push(format!("{} {what} · mean {mean:.1} cm · longest {longest:.1} cm", grouped(count)));
+    }
+    if words.is_empty() && scene.hair().next().is_none() {
+        let surfaces = scene.parts.iter().filter_map(|p| match &p.body {
+            Body::Mesh(mesh, _) => Some(mesh.triangles.len()),
+            Body::Hair(_) | Body::Locks(_) => None,
+        });
+        words.push(format!("{} triangles", grouped(surfaces.sum())));
     }
     if words.is_empty() { format!("no {what}") } else { words.join(" · ") }
 }

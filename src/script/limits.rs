@@ -50,6 +50,16 @@ impl Need {
         Self { strands, points: strands.saturating_mul(each), triangles: 0 }
     }
 
+    /// The same so many times over: for every frame.
+    #[must_use]
+    pub fn times(self, count: u64) -> Self {
+        Self {
+            strands: self.strands.saturating_mul(count),
+            points: self.points.saturating_mul(count),
+            triangles: self.triangles.saturating_mul(count),
+        }
+    }
+
     /// So many triangles.
     pub fn triangles(triangles: usize) -> Self {
         Self { triangles: triangles as u64, ..Self::default() }

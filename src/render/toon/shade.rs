@@ -1,11 +1,11 @@
 //! Flat tones for the samples of a band.
 
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::raster::{self, NONE, Nearest, Screen};
 use super::{Camera, LAMP, Lock, Tones, Toon};
-use crate::geometry::Bounds;
+use crate::render::depths::Depths;
 use crate::task::{Cancelled, Task};
 
 /// Cosine to the lamp below which the third tone begins.
@@ -14,10 +14,6 @@ const DEEP: f32 = 0.42;
 const TILT: f32 = 1.0 / 32000.0;
 /// No skin.
 pub(super) const NO_TILT: i16 = i16::MIN;
-/// Samples per side of the map of depths that the lamp sees.
-const MAP: usize = 384;
-/// Radius of the lamp's soft shadow, cm.
-const SOFT: f32 = 0.45;
 /// Edges of skin longer than this many cm are shaded sample by sample.
 const COARSE: f32 = 0.8;
 
@@ -42,7 +38,7 @@ struct Lit {
 
 /// The lamp of one view.
 pub(super) struct Light {
-    shadow: Shadow,
+    shadow: Depths,
     lit: Vec<Lit>,
 }
 
@@ -50,7 +46,7 @@ impl Light {
     pub(super) fn new(toon: &Toon, camera: &Camera, task: &Task) -> Result<Self, Cancelled> {
         let lamp = camera.to_world(LAMP.normalize());
         let half = (lamp + camera.toward).normalize_or(lamp);
-        let shadow = Shadow::new(toon, lamp);
+        let shadow = shadow(toon, lamp);
         task.check()?;
         // The figure of a vertex decides how it is lit.
         let mut skin = vec![false; toon.vertices.len()];
@@ -74,7 +70,7 @@ impl Light {
                     let cosine = n.dot(lamp) + 0.06;
                     // What faces away far enough is dark in any case.
                     let near = cosine > -0.3;
-                    let free = if near { shadow.free(v.position + v.normal * 0.25 + lamp * 0.15) - 0.5 } else { 0.5 };
+                    let free = if near { shadow.sample(v.position + v.normal * 0.25 + lamp * 0.15) - 0.5 } else { 0.5 };
                     Lit { lamp: cosine, free, off: 0.0, facing: -1.0, tilt, along, across }
                 } else {
                     // Locks that lie on the head share its light; what each of them adds keeps them apart.
@@ -383,8 +379,8 @@ impl Run<'_> {
             match &coarse {
                 Some((x, y, z)) if lit > 0.0 => {
                     let place = Vec3::new(x.at + x.right * k, y.at + y.right * k, z.at + z.right * k);
-                    let lamp = self.light.shadow.axes.z_axis;
-                    let free = self.light.shadow.free(place + vertex(0).normal * 0.25 + lamp * 0.15);
+                    let lamp = self.light.shadow.lamp();
+                    let free = self.light.shadow.sample(place + vertex(0).normal * 0.25 + lamp * 0.15);
                     lit = lit.min((0.5 + 4.0 * (free - 0.5)).clamp(0.0, 1.0));
                 }
                 Some(_) => {}
@@ -407,72 +403,18 @@ fn half_band(tones: &Tones, along: f32, across: f32) -> f32 {
     tones.band * 0.55 * round * ends - 0.02 * (1.0 - ends)
 }
 
-/// The surfaces as the lamp sees them: per cell the depth of the nearest.
-struct Shadow {
-    axes: Mat3,
-    origin: Vec2,
-    cell: f32,
-    nearest: Vec<f32>,
-}
-
-impl Shadow {
-    fn new(toon: &Toon, lamp: Vec3) -> Self {
-        let right = lamp.any_orthonormal_vector();
-        let axes = Mat3::from_cols(right, lamp.cross(right), lamp);
-        let back = axes.transpose();
-        let bounds = Bounds::of(toon.vertices.iter().map(|v| back * v.position).filter(|p| p.is_finite()));
-        let bounds = if bounds.is_empty() { Bounds::of([Vec3::ZERO]) } else { bounds };
-        let cell = (bounds.size().truncate().max_element() / (MAP as f32 - 4.0)).max(1e-4);
-        let origin = bounds.min.truncate() - Vec2::splat(2.0 * cell);
+/// The surfaces as the lamp sees them.
+fn shadow(toon: &Toon, lamp: Vec3) -> Depths {
+    const MAP: usize = Depths::CELLS;
+    Depths::drawn(toon.vertices.iter().map(|v| v.position), lamp, |cell| {
         // Downward, so that what faces the lamp has the sign of what faces a viewer.
         let project = |p: Vec3| {
-            let q = back * p;
-            Vec3::new((q.x - origin.x) / cell, MAP as f32 - (q.y - origin.y) / cell, q.z)
+            let q = cell(p);
+            Vec3::new(q.x, MAP as f32 - q.y, q.z)
         };
         let screen = Screen::new(toon, MAP, MAP, MAP / 8, project);
-        let nearest: Vec<Vec<f32>> =
+        let bands: Vec<Vec<f32>> =
             (0..screen.bands()).into_par_iter().map(|band| screen.nearest(band, 0).depth).collect();
-        Self { axes, origin, cell, nearest: nearest.concat() }
-    }
-
-    /// The fraction of the lamp that the surfaces leave free at `p`; its edge is as soft as a wide lamp's.
-    fn free(&self, p: Vec3) -> f32 {
-        let q = self.axes.transpose() * p;
-        let at = (q.truncate() - self.origin) / self.cell;
-        let at = Vec2::new(at.x, MAP as f32 - at.y) - Vec2::splat(0.5);
-        if !(at.min_element() > 0.0 && at.max_element() < MAP as f32 - 1.0) {
-            return 1.0;
-        }
-        let reach = SOFT / self.cell;
-        let mut free = 0.0;
-        for (x, y) in RING {
-            let s = at + Vec2::new(x, y) * reach;
-            let (i, j) = (s.x.clamp(0.0, MAP as f32 - 2.0), s.y.clamp(0.0, MAP as f32 - 2.0));
-            let (column, line) = (i as usize, j as usize);
-            let (fx, fy) = (i - column as f32, j - line as f32);
-            let k = line * MAP + column;
-            // Depth within half a cm counts in part.
-            let lit = |k: usize| (1.0 - (self.nearest[k] - q.z - 0.25) / 0.5).clamp(0.0, 1.0);
-            let (lo, hi) = (lit(k) + (lit(k + 1) - lit(k)) * fx, lit(k + MAP) + (lit(k + MAP + 1) - lit(k + MAP)) * fx);
-            free += lo + (hi - lo) * fy;
-        }
-        free / RING.len() as f32
-    }
+        bands.concat().chunks_exact(MAP).rev().flatten().copied().collect()
+    })
 }
-
-/// Places on a disc of radius 1: the middle and two rings.
-const RING: [(f32, f32); 13] = [
-    (0.0, 0.0),
-    (0.5, 0.0),
-    (-0.5, 0.0),
-    (0.0, 0.5),
-    (0.0, -0.5),
-    (0.92, 0.38),
-    (0.38, 0.92),
-    (-0.38, 0.92),
-    (-0.92, 0.38),
-    (-0.92, -0.38),
-    (-0.38, -0.92),
-    (0.38, -0.92),
-    (0.92, -0.38),
-];

@@ -357,7 +357,7 @@ fn resting(frames: usize) -> PathOptions {
         states: None,
         frames,
         curve: crate::animate::PathCurve::Line,
-        ease: crate::animate::Ease::Linear,
+        ease: crate::geometry::Ease::Linear,
         times: None,
         closed: true,
         back: false,

@@ -137,9 +137,8 @@ fn simulate_strands(call: &Call) -> Result<Value> {
     let mut keys = Digest::new("simulate 1");
     let mut out: Vec<Clip<Strands>> = vec![];
     for strands in parts(&this) {
-        let (points, each) = (strands.points.len() as u64, strands.count() as u64);
-        let need = Need { strands: each.saturating_mul(count), points: points.saturating_mul(count), triangles: 0 };
-        call.claim("", need)?;
+        let once = Need { points: strands.points.len() as u64, ..Need::strands(strands.count(), 0) };
+        call.claim("", once.times(count))?;
         let mut key = Digest::new("simulate 1");
         key.data(&own).data(&motion);
         moved.digest(call, &this, strands, &mut key);

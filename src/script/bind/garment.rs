@@ -7,8 +7,9 @@ use glam::Vec3;
 
 use super::super::call::{Call, Result};
 use super::super::registry::{Entry, Getter, Noun, Shape};
-use super::deform::{DeformFields, Verb, deformers, drawn, failed, key_of};
+use super::deform::{DeformFields, Verb, deformers, drawn, key_of};
 use super::head::give;
+use super::lattice::failed;
 use super::overlay;
 use crate::deform::{self, Band, Bend, DeformError, Deformer, FitOptions, Lift, Measure, Taper, Target};
 use crate::garment::{self, DressOptions, FormOptions, Garment, ShirtOptions, SkirtOptions, Tape, TrousersOptions};

@@ -4,6 +4,7 @@
 //! its arguments strictly, calls the core, and gives the core's errors a place. This file is the table of contents.
 
 mod animate;
+mod carry;
 mod clip;
 mod constants;
 mod deform;
@@ -14,6 +15,7 @@ mod garment;
 mod golden;
 mod guides;
 mod head;
+mod lattice;
 mod material;
 mod overlay;
 mod params;
@@ -49,7 +51,7 @@ pub fn registry() -> Registry {
         tuft::functions(),
         piece::functions(),
         animate::functions(),
-        deform::functions(),
+        lattice::functions(),
         garment::functions(),
         material::functions(),
         clip::functions(),
@@ -64,7 +66,7 @@ pub fn registry() -> Registry {
         tuft::nouns(),
         vec![animate::noun()],
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
-        deform::nouns(),
+        lattice::nouns(),
         vec![garment::noun()],
         tested::nouns(),
     ];

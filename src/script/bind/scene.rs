@@ -12,7 +12,7 @@ use super::garment::Cloth;
 use super::piece::Piece as Shape;
 use super::strands::Lock;
 use super::tuft::Wig;
-use super::{deform, overlay};
+use super::{carry, overlay};
 use crate::geometry::{Clip, Mesh};
 use crate::head::{Head, HeadMotion};
 use crate::math::Colour;
@@ -105,9 +105,9 @@ impl Piece {
     fn carried(&self, call: &Call, to: &Arc<Head>) -> Result<Self> {
         Ok(match self {
             Self::Head(_) => Self::Head(Arc::clone(to)),
-            Self::Hair(lock) => Self::Hair(Arc::new(deform::carried_strands(call, lock, to)?)),
-            Self::Tufts(wig) => Self::Tufts(deform::carried_tufts(call, wig, to)?),
-            Self::Shape(shape) => Self::Shape(Arc::new(deform::carried_piece(call, shape, to)?)),
+            Self::Hair(lock) => Self::Hair(Arc::new(carry::carried_strands(call, lock, to)?)),
+            Self::Tufts(wig) => Self::Tufts(carry::carried_tufts(call, wig, to)?),
+            Self::Shape(shape) => Self::Shape(Arc::new(carry::carried_piece(call, shape, to)?)),
             Self::Cloth(cloth) => Self::Cloth(Arc::clone(cloth)),
             Self::MovingHair(_) | Self::MovingLocks(_) => {
                 let (what, source) = self.made();

@@ -330,12 +330,7 @@ pub fn material_clip(call: &Call) -> Result<Value> {
 
 /// What something takes in every frame of a clip, and at rest.
 fn frames(once: Need, clip: &Clip<Strands>) -> Need {
-    let count = clip.count() as u64 + 1;
-    Need {
-        strands: once.strands.saturating_mul(count),
-        points: once.points.saturating_mul(count),
-        triangles: once.triangles,
-    }
+    once.times(clip.count() as u64 + 1)
 }
 
 fn material(call: &Call) -> Result<Value> {
