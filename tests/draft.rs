@@ -32,11 +32,13 @@ fn edited(from: &str, to: &str) -> String {
 struct Bench {
     out: tempfile::TempDir,
     script: Options,
+    /// Width and height of a view.
+    size: u32,
 }
 
 impl Bench {
     fn new() -> Self {
-        Self { out: tempfile::tempdir().unwrap(), script: Options::new("style/a.lua") }
+        Self { out: tempfile::tempdir().unwrap(), script: Options::new("style/a.lua"), size: 48 }
     }
 
     fn options(&self) -> RunOptions {
@@ -46,7 +48,7 @@ impl Bench {
             debug: false,
             background: None,
             views: None,
-            sheet: SheetOptions { width: 48, height: 48, ..SheetOptions::default() },
+            sheet: SheetOptions { width: self.size, height: self.size, supersample: 1, ..SheetOptions::default() },
             strands: StrandForm::None,
             tolerance: 0.05,
             guides: false,
@@ -149,6 +151,30 @@ fn there_is_one_only_where_it_is_worth_it() {
     assert!(!drafted("return coif.scene { coif.head() }"));
     // Two fills count each on its own.
     assert!(!drafted(&edited("strands = 200", "strands = 40").replace("head, hair", "head, hair, hair:material {}")));
+}
+
+#[test]
+fn a_large_picture_has_a_draft_of_the_same_scene() {
+    let script = "return coif.scene { coif.head(), views = { 'front' } }";
+    let (large, plain) = (Bench { size: 1600, ..Bench::new() }, Bench { size: 1600, ..Bench::new() });
+    let (sketch, report) = large.looks(script);
+    let sketch = sketch.expect("a draft");
+    assert!(report.written.is_ok() && sketch.name == "a · draft" && Look::of(&report, vec![]).name == "a");
+    // Each step once, and the picture's last.
+    let stages: Vec<&str> = report.stages.iter().map(|s| s.what).collect();
+    assert_eq!(stages, ["script", "picture", "write"]);
+    let files = Arc::new(Memory::default().with("style/a.lua", script));
+    coif::workbench::preview(&plain.options(), files, &Task::new());
+    assert_eq!(large.picture(), plain.picture(), "the whole picture is the same with a draft before it or none");
+    // The draft has the same size and much the same pixels.
+    let [draft, whole] =
+        [sketch.picture, large.picture()].map(|bytes| coif::render::png::decode(&bytes).expect("a picture"));
+    assert_eq!((draft.width, draft.height), (whole.width, whole.height));
+    let off: u64 = draft.pixels.iter().zip(&whole.pixels).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    let mean = off as f64 / draft.pixels.len() as f64;
+    assert!(mean > 0.0 && mean < 1.0, "{mean}");
+    // Known already.
+    assert!(large.looks(script).0.is_none());
 }
 
 #[test]

@@ -67,6 +67,17 @@ impl Camera {
     pub fn enlarged(self, factor: usize) -> Self {
         Self { scale: self.scale * factor as f32, width: self.width * factor, height: self.height * factor, ..self }
     }
+
+    /// The same camera for a picture with `factor` times fewer pixels on each side, the last of them perhaps in part.
+    #[must_use]
+    pub fn reduced(self, factor: usize) -> Self {
+        let (width, height) = (self.width.div_ceil(factor), self.height.div_ceil(factor));
+        // What is in the middle of the one is in the middle of the other's whole part.
+        let scale = self.scale / factor as f32;
+        let beyond = |count: usize, small: usize| 0.5 * (small * factor - count) as f32 / self.scale;
+        let centre = self.centre + self.right * beyond(self.width, width) - self.up * beyond(self.height, height);
+        Self { scale, width, height, centre, ..self }
+    }
 }
 
 fn upright(toward: Vec3) -> Mat3 {
@@ -278,6 +289,7 @@ mod tests {
         };
         assert_eq!(camera.project(Vec3::new(1.0, 2.0, 3.0)), Vec3::new(100.0, 50.0, 0.0));
         assert_eq!(camera.project(Vec3::new(2.0, 3.0, 5.0)), Vec3::new(110.0, 40.0, 2.0));
+        assert_eq!(camera.unproject(Vec3::new(110.0, 40.0, 2.0)), Vec3::new(2.0, 3.0, 5.0));
         let p = Vec3::new(0.5, -3.0, 7.0);
         let rows = camera.rows().map(|r| Vec3::from_slice(&r[..3]).dot(p) + r[3]);
         assert!(Vec3::from(rows).distance(camera.project(p)) < 1e-4);

@@ -151,28 +151,130 @@ impl<'a> Studio<'a> {
         reach
     }
 
-    /// Linear colour of a surface with the unit normal `n` turned to the viewer.
-    pub fn surface(&self, material: &Skin, n: Vec3, light: &Reach) -> Vec3 {
-        // Light that hair and skin throw at each other keeps a face readable between curtains of hair.
-        let open = 0.16 + 0.24 * light.open.max(0.0).sqrt() + 0.60 * light.open;
-        let mut sum = material.albedo * SKY * (open * (0.66 + 0.30 * n.dot(self.up)));
-        // Light that bounced inside the skin comes out redder and past the edge of the shadow.
-        let wrap = Vec3::new(0.34, 0.20, 0.14);
-        for (lamp, hair) in self.lamps.iter().zip(light.hair) {
-            let nl = n.dot(lamp.toward);
-            let hair = 0.14 + 0.86 * if lamp.skin.is_some() { hair } else { open };
-            let head = if lamp.head.is_some() { light.head } else { 1.0 };
-            let reach = if nl > UNLIT { hair * head } else { 0.0 };
-            let soft = ((Vec3::splat(nl) + wrap) / (Vec3::ONE + wrap)).max(Vec3::ZERO);
-            let reach_rgb = Vec3::new(reach.max(0.0).sqrt() * 0.35 + reach * 0.65, reach, reach);
-            sum += material.albedo * lamp.colour * soft * soft.map(f32::sqrt) * reach_rgb * 0.60;
-            let h = (lamp.toward + self.toward).normalize_or_zero();
-            let nh = n.dot(h).max(0.0);
-            let fresnel = 0.03 + 0.5 * fast::exp(-6.0 * n.dot(self.toward).max(0.0));
-            let gloss = fast::exp(-(1.0 - nh) * material.sharpness) * fresnel * material.gloss;
-            sum += lamp.colour * (gloss * reach * (nl * 4.0).clamp(0.0, 1.0));
+    /// Colours all of `panes` as the viewer sees them.
+    pub fn surface(&self, panes: &mut Panes) {
+        let lamps = std::array::from_fn(|i| {
+            let lamp = &self.lamps[i];
+            let half = (lamp.toward + self.toward).normalize_or_zero();
+            Beam {
+                toward: lamp.toward.to_array(),
+                half: half.to_array(),
+                colour: lamp.colour.to_array(),
+                hair: lamp.skin.is_some(),
+                head: lamp.head.is_some(),
+            }
+        });
+        shine(&lamps, self.toward.to_array(), self.up.to_array(), panes);
+    }
+}
+
+/// A lamp as a surface sees it.
+struct Beam {
+    toward: [f32; 3],
+    /// Half way to the viewer.
+    half: [f32; 3],
+    colour: [f32; 3],
+    /// Shaded by hair; otherwise by openness.
+    hair: bool,
+    /// Shaded by the head.
+    head: bool,
+}
+
+/// Places on surfaces that are shaded side by side, each number of theirs apart.
+#[derive(Clone, Debug)]
+pub struct Panes {
+    normal: [[f32; Self::COUNT]; 3],
+    albedo: [[f32; Self::COUNT]; 3],
+    sharpness: [f32; Self::COUNT],
+    gloss: [f32; Self::COUNT],
+    open: [f32; Self::COUNT],
+    hair: [[f32; Self::COUNT]; LAMPS.len()],
+    head: [f32; Self::COUNT],
+    /// Linear.
+    colour: [[f32; Self::COUNT]; 3],
+}
+
+impl Default for Panes {
+    fn default() -> Self {
+        let (zero, zero3) = ([0.0; Self::COUNT], [[0.0; Self::COUNT]; 3]);
+        let hair = [zero; LAMPS.len()];
+        let (sharpness, gloss, open, head) = (zero, zero, zero, zero);
+        Self { normal: zero3, albedo: zero3, sharpness, gloss, open, hair, head, colour: zero3 }
+    }
+}
+
+impl Panes {
+    /// How many there are.
+    pub const COUNT: usize = 16;
+
+    /// Puts a place into a lane: its material, its linear colour, its unit normal turned to the viewer, its light.
+    pub fn set(&mut self, lane: usize, material: &Skin, albedo: Vec3, normal: Vec3, light: &Reach) {
+        for k in 0..3 {
+            self.normal[k][lane] = normal[k];
+            self.albedo[k][lane] = albedo[k];
         }
-        shoulder(sum)
+        (self.sharpness[lane], self.gloss[lane]) = (material.sharpness, material.gloss);
+        (self.open[lane], self.head[lane]) = (light.open, light.head);
+        for (of, hair) in self.hair.iter_mut().zip(light.hair) {
+            of[lane] = hair;
+        }
+    }
+
+    /// The linear colour of a lane.
+    pub fn colour(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.colour[0][lane], self.colour[1][lane], self.colour[2][lane])
+    }
+}
+
+/// Light that bounced inside the skin comes out redder and past the edge of the shadow.
+const WRAP: [f32; 3] = [0.34, 0.20, 0.14];
+
+/// Shades all panes. Every loop over them is without branches, so that it becomes vector instructions.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+fn shine(lamps: &[Beam; LAMPS.len()], v: [f32; 3], up: [f32; 3], panes: &mut Panes) {
+    const N: usize = Panes::COUNT;
+    let Panes { normal: [nx, ny, nz], albedo, sharpness, gloss, open, hair, head, colour } = panes;
+    let (mut seen, mut fresnel) = ([0.0; N], [0.0; N]);
+    for i in 0..N {
+        // Light that hair and skin throw at each other keeps a face readable between curtains of hair.
+        seen[i] = 0.16 + 0.24 * open[i].max(0.0).sqrt() + 0.60 * open[i];
+        let facing = nx[i] * v[0] + ny[i] * v[1] + nz[i] * v[2];
+        fresnel[i] = (0.03 + 0.5 * fast::exp(-6.0 * facing.max(0.0))) * gloss[i];
+    }
+    for k in 0..3 {
+        let sky = SKY.to_array()[k];
+        for i in 0..N {
+            let above = nx[i] * up[0] + ny[i] * up[1] + nz[i] * up[2];
+            colour[k][i] = albedo[k][i] * sky * (seen[i] * (0.66 + 0.30 * above));
+        }
+    }
+    for (lamp, hair) in lamps.iter().zip(hair) {
+        let (l, h) = (lamp.toward, lamp.half);
+        let (mut facing, mut reach, mut highlight) = ([0.0; N], [0.0; N], [0.0; N]);
+        for i in 0..N {
+            facing[i] = nx[i] * l[0] + ny[i] * l[1] + nz[i] * l[2];
+            let past_hair = 0.14 + 0.86 * if lamp.hair { hair[i] } else { seen[i] };
+            let past_head = if lamp.head { head[i] } else { 1.0 };
+            reach[i] = if facing[i] > UNLIT { past_hair * past_head } else { 0.0 };
+            let near = (nx[i] * h[0] + ny[i] * h[1] + nz[i] * h[2]).max(0.0);
+            let lit = (facing[i] * 4.0).clamp(0.0, 1.0);
+            highlight[i] = fast::exp(-(1.0 - near) * sharpness[i]) * fresnel[i] * reach[i] * lit;
+        }
+        for k in 0..3 {
+            // Red reaches farther into shadows.
+            let deep = if k == 0 { 0.35 } else { 0.0 };
+            let (wrap, share) = (WRAP[k], 1.0 / (1.0 + WRAP[k]));
+            for i in 0..N {
+                let soft = ((facing[i] + wrap) * share).max(0.0);
+                let part = reach[i].max(0.0).sqrt() * deep + reach[i] * (1.0 - deep);
+                colour[k][i] += lamp.colour[k] * (albedo[k][i] * soft * soft.sqrt() * part * 0.60 + highlight[i]);
+            }
+        }
+    }
+    for channel in colour {
+        for c in channel {
+            *c = bend(*c);
+        }
     }
 }
 
@@ -290,10 +392,6 @@ fn answer(lamps: &[Ray; LAMPS.len()], v: [f32; 3], up: [f32; 3], shine: f32, wid
 }
 
 /// Keeps values up to 0.6 and bends the rest softly below 1.
-fn shoulder(c: Vec3) -> Vec3 {
-    c.map(bend)
-}
-
 #[inline(always)]
 fn bend(x: f32) -> f32 {
     let bent = 1.0 - 0.4 * fast::exp((0.6 - x) * 2.5);
@@ -368,11 +466,5 @@ impl Skin {
     /// Its linear colour.
     pub fn albedo(&self) -> Vec3 {
         self.albedo
-    }
-
-    /// The same with another linear colour.
-    #[must_use]
-    pub fn tinted(self, albedo: Vec3) -> Self {
-        Self { albedo, ..self }
     }
 }

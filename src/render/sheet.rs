@@ -43,13 +43,15 @@ pub struct SheetOptions {
     pub columns: Option<u32>,
     /// Samples per pixel along each side, 1 to 4: 1 while watching, 2 for a picture that is kept.
     pub supersample: u32,
+    /// Pixels of the sheet along each side of one that is drawn, 1 to 8: 2 for a draft, a quarter of the work.
+    pub coarse: u32,
     /// Names, figures and a scale bar around the views.
     pub lettering: bool,
 }
 
 impl Default for SheetOptions {
     fn default() -> Self {
-        Self { width: 640, height: 720, columns: None, supersample: 2, lettering: true }
+        Self { width: 640, height: 720, columns: None, supersample: 2, coarse: 1, lettering: true }
     }
 }
 
@@ -118,6 +120,7 @@ impl Layout {
             ("width", options.width, 16, 8192),
             ("height", options.height, 16, 8192),
             ("supersample", options.supersample, 1, 4),
+            ("coarseness", options.coarse, 1, 8),
             ("column count", options.columns.unwrap_or(1), 1, 64),
         ];
         for (what, value, least, most) in sizes {
@@ -281,6 +284,32 @@ pub(super) fn paste(picture: &mut Picture, view: &[u8], (x, y): (u32, u32), widt
     }
 }
 
+/// A picture of `size` pixels with each of them `factor` times as large on each side, cut to `wanted` pixels: between the
+/// middles of pixels colours go over evenly.
+fn enlarge(pixels: &[u8], size: [usize; 2], factor: usize, wanted: [usize; 2]) -> Vec<u8> {
+    // Per place along a side: the pixel before, the one after, and the share of the second in 256ths.
+    let places = |count: usize, wanted: usize| -> Vec<(usize, usize, u32)> {
+        let place = |i: usize| {
+            let at = (((2 * i + 1) * 128 / factor).max(128) - 128).min((count - 1) * 256);
+            (at / 256, (at / 256 + 1).min(count - 1), (at % 256) as u32)
+        };
+        (0..wanted).map(place).collect()
+    };
+    let (columns, rows) = (places(size[0], wanted[0]), places(size[1], wanted[1]));
+    let mut out = vec![0; wanted[0] * wanted[1] * 3];
+    out.par_chunks_exact_mut(3 * wanted[0]).zip(rows).for_each(|(out, (up, down, low))| {
+        let row = |y: usize| &pixels[y * size[0] * 3..(y + 1) * size[0] * 3];
+        let mixed: Vec<u32> =
+            row(up).iter().zip(row(down)).map(|(&a, &b)| u32::from(a) * (256 - low) + u32::from(b) * low).collect();
+        for (pixel, &(left, right, share)) in out.chunks_exact_mut(3).zip(&columns) {
+            for (k, byte) in pixel.iter_mut().enumerate() {
+                *byte = ((mixed[3 * left + k] * (256 - share) + mixed[3 * right + k] * share + (1 << 15)) >> 16) as u8;
+            }
+        }
+    });
+    out
+}
+
 /// How far the views of a sheet are, which are drawn at once.
 struct Steps<'a> {
     task: &'a Task,
@@ -350,8 +379,26 @@ impl Stage {
         Ok(Self { meshes, density, sky, toon: None })
     }
 
-    /// One view: its bytes, and words for the lettering.
+    /// One view for a sheet whose camera is given: its bytes, and words for the lettering.
     fn view<'a>(
+        &'a self,
+        scene: &'a Scene,
+        camera: &Camera,
+        options: &SheetOptions,
+        paper: Colour,
+        steps: &Steps,
+    ) -> Result<(Vec<u8>, Vec<Label>), Cancelled> {
+        if options.coarse == 1 {
+            return self.drawn(scene, camera, options, paper, steps);
+        }
+        let coarse = options.coarse as usize;
+        let small = camera.reduced(coarse);
+        let (pixels, words) = self.drawn(scene, &small, options, paper, steps)?;
+        Ok((enlarge(&pixels, [small.width, small.height], coarse, [camera.width, camera.height]), words))
+    }
+
+    /// One view with as many pixels as `camera` has.
+    fn drawn<'a>(
         &'a self,
         scene: &'a Scene,
         camera: &Camera,
@@ -380,7 +427,7 @@ impl Stage {
             Some(toon) => toon.draw(&fine, ss, task)?,
             None => surface::draw(&shells, &fine, &studio, task)?,
         };
-        let pen = (options.width as f32 / 520.0).clamp(0.7, 2.5);
+        let pen = (camera.width as f32 / 520.0).clamp(0.7, 2.5);
         let drawing = scene.look.debug.then(|| overlay::draw(scene, camera, pen));
         let mut bundles: Vec<Bundle> = match &drawing {
             Some(drawing) => drawing.wires.iter().map(|w| w.bundle(ss as f32)).collect(),

@@ -7,13 +7,17 @@ use crate::geometry::Mesh;
 use crate::task::{Cancelled, Task};
 
 use super::camera::Camera;
-use super::shade::{Reach, Skin, Studio};
+use super::scan::{cover, scan};
+use super::shade::{Panes, Reach, Skin, Studio};
 
-/// Rows of pixels that one task draws.
+/// Rows of pixels that one task draws; even, for light is looked up in every other row.
 const BAND: usize = 16;
-/// Rotated grid of samples within a pixel.
-const SAMPLES: [Vec2; 4] =
-    [Vec2::new(0.375, 0.125), Vec2::new(0.875, 0.375), Vec2::new(0.125, 0.625), Vec2::new(0.625, 0.875)];
+/// Rows of samples in one of pixels, each with one sample: a rotated grid.
+const LINES: usize = 4;
+/// How far right of its pixel's left border the sample of each row lies, in pixels.
+const SAMPLES: [f32; LINES] = [0.375, 0.875, 0.125, 0.625];
+/// No triangle.
+const NONE: u32 = u32::MAX;
 
 /// A surface and its material, ready to be drawn.
 #[derive(Clone, Copy, Debug)]
@@ -42,25 +46,26 @@ pub struct Layer {
 /// A triangle in the picture.
 struct Face {
     /// In pixels, with depth.
-    pub corners: [Vec3; 3],
+    corners: [Vec3; 3],
+    weights: Weights,
     /// Index of its mesh.
-    pub shell: u32,
+    shell: u32,
     /// Index within the mesh.
-    pub triangle: u32,
+    triangle: u32,
 }
 
 /// All triangles that can be seen, and those of each band of rows.
 struct Faces {
     /// In the order of the meshes.
-    pub faces: Vec<Face>,
-    /// Per band of [`BAND`] rows: indices into `faces`.
-    pub of_band: Vec<Vec<u32>>,
+    faces: Vec<Face>,
+    /// Per band of [`BAND`] rows, and the row after: indices into `faces`.
+    of_band: Vec<Vec<u32>>,
 }
 
 /// Projects the triangles of all `meshes`.
 fn faces<'a>(meshes: impl Iterator<Item = &'a Mesh>, camera: &Camera, task: &Task) -> Result<Faces, Cancelled> {
-    let (width, height) = (camera.width, camera.height);
-    let mut all = Faces { faces: Vec::new(), of_band: vec![Vec::new(); height.div_ceil(BAND)] };
+    let (width, height) = (camera.width as f32, camera.height as f32);
+    let mut all = Faces { faces: Vec::new(), of_band: vec![Vec::new(); camera.height.div_ceil(BAND)] };
     for (shell, mesh) in meshes.enumerate() {
         task.check()?;
         let projected: Vec<Vec3> = mesh.positions.iter().map(|&p| camera.project(p)).collect();
@@ -68,52 +73,58 @@ fn faces<'a>(meshes: impl Iterator<Item = &'a Mesh>, camera: &Camera, task: &Tas
             let corners = t.map(|v| projected[v as usize]);
             let lo = corners[0].min(corners[1]).min(corners[2]);
             let hi = corners[0].max(corners[1]).max(corners[2]);
-            let seen = lo.x < width as f32 && lo.y < height as f32 && hi.x > 0.0 && hi.y > 0.0;
-            if !(seen && lo.is_finite() && hi.is_finite()) {
+            let seen = lo.x < width && lo.y < height && hi.x > 0.0 && hi.y > 0.0;
+            let (true, Some(weights)) = (seen && lo.is_finite() && hi.is_finite(), Weights::of(&corners)) else {
                 continue;
-            }
-            let (first, last) = (lo.y.max(0.0) as usize / BAND, hi.y.min(height as f32 - 1.0) as usize / BAND);
+            };
+            let (first, last) = ((lo.y - 1.0).max(0.0) as usize / BAND, hi.y.min(height - 1.0) as usize / BAND);
             for band in &mut all.of_band[first..=last] {
                 band.push(all.faces.len() as u32);
             }
-            all.faces.push(Face { corners, shell: shell as u32, triangle: triangle as u32 });
+            all.faces.push(Face { corners, weights, shell: shell as u32, triangle: triangle as u32 });
         }
     }
     Ok(all)
 }
 
-/// What is nearest in each sample of `rows` rows from `top` on, [`SAMPLES`] per pixel: depths and indices into `faces`.
-fn nearest(faces: &[Face], list: &[u32], width: usize, top: usize, rows: usize) -> (Vec<f32>, Vec<u32>) {
-    let n = SAMPLES.len();
-    let mut depth = vec![f32::NEG_INFINITY; width * rows * n];
-    let mut owner = vec![u32::MAX; width * rows * n];
-    for &f in list {
-        let c = &faces[f as usize].corners;
-        let Some(weights) = Weights::of(c) else { continue };
-        let depths = Vec3::new(c[0].z, c[1].z, c[2].z);
-        let lo = c[0].min(c[1]).min(c[2]);
-        let hi = c[0].max(c[1]).max(c[2]);
-        let (x0, x1) = (lo.x.max(0.0) as usize, (hi.x.min(width as f32 - 1.0)) as usize);
-        let y0 = (lo.y.max(top as f32) as usize).max(top);
-        let y1 = (hi.y.max(0.0) as usize).min(top + rows - 1);
-        for y in y0..=y1 {
-            for x in x0..=x1 {
-                for (s, offset) in SAMPLES.iter().enumerate() {
-                    let w = weights.at(Vec2::new(x as f32, y as f32) + *offset);
-                    if w.min_element() < 0.0 {
-                        continue;
-                    }
-                    let z = depths.dot(w);
-                    let i = ((y - top) * width + x) * n + s;
-                    if z > depth[i] {
-                        depth[i] = z;
-                        owner[i] = f;
-                    }
-                }
-            }
+/// Rows of samples with what is nearest in each.
+struct Nearest {
+    width: usize,
+    depth: Vec<f32>,
+    /// Indices of faces.
+    owner: Vec<u32>,
+}
+
+impl Nearest {
+    /// In `rows` rows of pixels from `top` on, [`LINES`] of samples for each.
+    fn new(faces: &[Face], list: &[u32], width: usize, top: usize, rows: usize) -> Self {
+        let count = width * rows * LINES;
+        let mut all = Self { width, depth: vec![f32::NEG_INFINITY; count], owner: vec![NONE; count] };
+        let first = top * LINES;
+        let squeezed = Vec3::new(1.0, LINES as f32, 1.0);
+        for &f in list {
+            let corners = faces[f as usize].corners.map(|c| c * squeezed);
+            let lines = first..first + rows * LINES;
+            scan(
+                corners,
+                lines,
+                width,
+                |y| SAMPLES[y % LINES] - 0.5,
+                |y, range, z, step| {
+                    let row = (y - first) * width;
+                    let range = row + range.start..row + range.end;
+                    cover(&mut all.depth[range.clone()], &mut all.owner[range], z, step, f);
+                },
+            );
         }
+        all
     }
-    (depth, owner)
+
+    /// The samples of pixel `x` in row `y`: depths and faces.
+    fn at(&self, x: usize, y: usize) -> ([f32; LINES], [u32; LINES]) {
+        let place = |line: usize| (y * LINES + line) * self.width + x;
+        (std::array::from_fn(|i| self.depth[place(i)]), std::array::from_fn(|i| self.owner[place(i)]))
+    }
 }
 
 /// Draws all `shells`.
@@ -123,20 +134,22 @@ fn nearest(faces: &[Face], list: &[u32], width: usize, top: usize, rows: usize) 
 pub fn draw(shells: &[Shell], camera: &Camera, studio: &Studio, task: &Task) -> Result<Layer, Cancelled> {
     let (width, height) = (camera.width, camera.height);
     let faces = faces(shells.iter().map(|s| s.mesh), camera, task)?;
-    let drawn: Result<Vec<Layer>, Cancelled> = (0..faces.of_band.len())
-        .into_par_iter()
-        .map(|band| {
-            task.check()?;
-            let top = band * BAND;
-            Ok(draw_band(shells, &faces, band, camera, studio, top, BAND.min(height - top)))
-        })
-        .collect();
-    let mut layer = Layer { width, depth: Vec::new(), cover: Vec::new(), colour: Vec::new() };
-    for band in drawn? {
-        layer.depth.extend(band.depth);
-        layer.cover.extend(band.cover);
-        layer.colour.extend(band.colour);
-    }
+    let blank = |value: f32| vec![value; width * height];
+    let mut layer =
+        Layer { width, depth: blank(f32::NEG_INFINITY), cover: blank(0.0), colour: vec![Vec3::ZERO; width * height] };
+    let bands = layer
+        .depth
+        .par_chunks_mut(BAND * width)
+        .zip(layer.cover.par_chunks_mut(BAND * width))
+        .zip(layer.colour.par_chunks_mut(BAND * width));
+    bands.enumerate().try_for_each(|(band, ((depth, cover), colour))| {
+        task.check()?;
+        if !faces.of_band[band].is_empty() {
+            let pixels = Pixels { depth, cover, colour };
+            draw_band(&Row { shells, faces: &faces.faces, camera }, &faces.of_band[band], studio, band * BAND, pixels);
+        }
+        Ok(())
+    })?;
     Ok(layer)
 }
 
@@ -170,9 +183,9 @@ impl Weights {
 /// What a pixel shows of the surfaces.
 #[derive(Clone, Copy)]
 struct Spot {
-    skin: Skin,
+    /// Index of the mesh whose material is seen.
+    shell: u32,
     tint: Vec3,
-    point: Vec3,
     normal: Vec3,
     depth: f32,
     cover: f32,
@@ -187,94 +200,87 @@ struct Row<'a> {
 
 impl Row<'_> {
     /// At pixel (`x`, `y`), whose samples have these depths and faces.
-    fn spot(&self, x: usize, y: usize, depth: &[f32], owner: &[u32]) -> Option<Spot> {
-        let n = SAMPLES.len();
+    fn spot(&self, x: usize, y: usize, depth: [f32; LINES], owner: [u32; LINES]) -> Option<Spot> {
         let pixel = Vec2::new(x as f32, y as f32);
-        if owner.iter().all(|&f| f == owner[0]) {
+        if owner == [owner[0]; LINES] {
             // The mean over the samples is what lies in the middle between them.
             let face = self.faces.get(owner[0] as usize)?;
-            let (point, normal, tint, skin) = self.course(face, pixel + Vec2::splat(0.5));
-            let depth = depth.iter().sum::<f32>() / n as f32;
-            return Some(Spot { skin, tint, point, normal: self.unit(normal), depth, cover: 1.0 });
+            let (normal, tint) = self.course(face, pixel + Vec2::splat(0.5));
+            let depth = (depth[0] + depth[1] + depth[2] + depth[3]) * 0.25;
+            return Some(Spot { shell: face.shell, tint, normal: self.unit(normal), depth, cover: 1.0 });
         }
-        let (mut hits, mut z, mut point, mut normal, mut tint) = (0.0, 0.0, Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        let mut skin = None;
-        for (s, offset) in SAMPLES.iter().enumerate() {
+        let (mut hits, mut z, mut normal, mut tint, mut shell) = (0.0, 0.0, Vec3::ZERO, Vec3::ZERO, None);
+        for s in 0..LINES {
             let Some(face) = self.faces.get(owner[s] as usize) else { continue };
-            let (p, n, t, own) = self.course(face, pixel + *offset);
+            let at = pixel + Vec2::new(SAMPLES[s], (s as f32 + 0.5) / LINES as f32);
+            let (n, t) = self.course(face, at);
             hits += 1.0;
             z += depth[s];
-            point += p;
             normal += n;
             tint += t;
-            skin = Some(own);
+            shell = Some(face.shell);
         }
-        let normal = self.unit(normal);
-        Some(Spot {
-            skin: skin?,
-            tint: tint / hits,
-            point: point / hits,
-            normal,
-            depth: z / hits,
-            cover: hits / n as f32,
-        })
+        let (normal, cover) = (self.unit(normal), hits / LINES as f32);
+        Some(Spot { shell: shell?, tint: tint / hits, normal, depth: z / hits, cover })
     }
 
     fn unit(&self, normal: Vec3) -> Vec3 {
         normal.try_normalize().unwrap_or(self.camera.toward)
     }
 
-    /// Point, normal turned to the viewer, tint and skin of a face at a place in the picture.
-    fn course(&self, face: &Face, at: Vec2) -> (Vec3, Vec3, Vec3, Skin) {
+    /// Normal turned to the viewer and tint of a face at a place in the picture.
+    fn course(&self, face: &Face, at: Vec2) -> (Vec3, Vec3) {
         let shell = &self.shells[face.shell as usize];
-        let w = Weights::of(&face.corners).map_or(Vec3::splat(1.0 / 3.0), |w| w.at(at));
+        let w = face.weights.at(at);
         let t = shell.mesh.triangles[face.triangle as usize].map(|v| v as usize);
         let mix = |v: &[Vec3]| v[t[0]] * w.x + v[t[1]] * w.y + v[t[2]] * w.z;
         let facing = mix(&shell.mesh.normals);
         let normal = if facing.dot(self.camera.toward) < -0.25 { -facing } else { facing };
-        (mix(&shell.mesh.positions), normal, shell.tints.map_or_else(|| shell.skin.albedo(), mix), shell.skin)
+        (normal, shell.tints.map_or_else(|| shell.skin.albedo(), mix))
     }
+
+    /// The light on what the middle of a pixel shows.
+    fn reach(&self, studio: &Studio, x: usize, y: usize, spot: &Spot) -> Reach {
+        studio.reach(self.camera.unproject(Vec3::new(x as f32 + 0.5, y as f32 + 0.5, spot.depth)), spot.normal)
+    }
+}
+
+/// A band of a [`Layer`].
+struct Pixels<'a> {
+    depth: &'a mut [f32],
+    cover: &'a mut [f32],
+    colour: &'a mut [Vec3],
 }
 
 /// Light is looked up at every so many pixels, and between them where the surface is smooth.
 const GRID: usize = 2;
 
-fn draw_band(
-    shells: &[Shell],
-    Faces { faces, of_band }: &Faces,
-    band: usize,
-    camera: &Camera,
-    studio: &Studio,
-    top: usize,
-    rows: usize,
-) -> Layer {
-    let (width, n) = (camera.width, SAMPLES.len());
-    let row = Row { shells, faces, camera };
-    let spots_of = |list: &[u32], top: usize, rows: usize| -> Vec<Option<Spot>> {
-        if list.is_empty() {
-            return vec![None; width * rows];
-        }
-        let (depth, owner) = nearest(faces, list, width, top, rows);
-        let samples = depth.chunks_exact(n).zip(owner.chunks_exact(n)).enumerate();
-        samples.map(|(i, (depth, owner))| row.spot(i % width, top + i / width, depth, owner)).collect()
-    };
-    let mut spots = spots_of(&of_band[band], top, rows);
-    if let Some(list) = of_band.get(band + 1) {
-        spots.extend(spots_of(list, top + rows, 1));
-    }
-    let columns = width.div_ceil(GRID);
-    let lights: Vec<Option<Reach>> = (0..spots.len().div_ceil(width).div_ceil(GRID) * columns)
-        .map(|i| spots[i / columns * GRID * width + i % columns * GRID])
-        .map(|spot| spot.map(|s| studio.reach(s.point, s.normal)))
+/// Draws the faces in `list` into a band of pixels that begins at row `top`.
+fn draw_band(row: &Row, list: &[u32], studio: &Studio, top: usize, pixels: Pixels) {
+    let camera = row.camera;
+    let width = camera.width;
+    let rows = pixels.depth.len() / width;
+    // The row after has the light that the last one lies under.
+    let all = (rows + 1).min(camera.height - top);
+    let nearest = Nearest::new(row.faces, list, width, top, all);
+    let spots: Vec<Option<Spot>> = (0..width * all)
+        .map(|i| {
+            let (depth, owner) = nearest.at(i % width, i / width);
+            row.spot(i % width, top + i / width, depth, owner)
+        })
         .collect();
-    let mut layer = Layer {
-        width,
-        depth: vec![f32::NEG_INFINITY; width * rows],
-        cover: vec![0.0; width * rows],
-        colour: vec![Vec3::ZERO; width * rows],
-    };
+    let columns = width.div_ceil(GRID);
+    let lights: Vec<Option<Reach>> = (0..all.div_ceil(GRID) * columns)
+        .map(|i| {
+            let (x, y) = (i % columns * GRID, i / columns * GRID);
+            spots[y * width + x].as_ref().map(|spot| row.reach(studio, x, top + y, spot))
+        })
+        .collect();
     // Farther apart than this, in depth, two neighbours are not of one smooth surface.
     let near = 3.0 * GRID as f32 / camera.scale;
+    let mut panes = Panes::default();
+    let mut filled = [0; Panes::COUNT];
+    let mut count = 0;
     for i in 0..width * rows {
         let Some(spot) = &spots[i] else { continue };
         let (x, y) = (i % width, i / width);
@@ -298,10 +304,18 @@ fn draw_band(
             }
             Some(sum)
         };
-        let reach = between().unwrap_or_else(|| studio.reach(spot.point, spot.normal));
-        layer.depth[i] = spot.depth;
-        layer.cover[i] = spot.cover;
-        layer.colour[i] = studio.surface(&spot.skin.tinted(spot.tint), spot.normal, &reach);
+        let reach = between().unwrap_or_else(|| row.reach(studio, x, top + y, spot));
+        pixels.depth[i] = spot.depth;
+        pixels.cover[i] = spot.cover;
+        panes.set(count, &row.shells[spot.shell as usize].skin, spot.tint, spot.normal, &reach);
+        filled[count] = i;
+        count += 1;
+        if count == Panes::COUNT {
+            studio.surface(&mut panes);
+            filled.iter().enumerate().for_each(|(lane, &i)| pixels.colour[i] = panes.colour(lane));
+            count = 0;
+        }
     }
-    layer
+    studio.surface(&mut panes);
+    filled[..count].iter().enumerate().for_each(|(lane, &i)| pixels.colour[i] = panes.colour(lane));
 }

@@ -70,7 +70,7 @@ fn scene(parts: Vec<Part>, views: &[View]) -> Scene {
 }
 
 fn bare(width: u32, height: u32) -> SheetOptions {
-    SheetOptions { width, height, columns: None, supersample: 1, lettering: false }
+    SheetOptions { width, height, columns: None, supersample: 1, coarse: 1, lettering: false }
 }
 
 fn draw(scene: &Scene, options: &SheetOptions) -> Picture {
@@ -224,6 +224,30 @@ fn an_empty_scene_is_paper() {
 }
 
 #[test]
+fn a_coarse_picture_shows_the_same_in_the_same_place() {
+    // Sizes that are no multiples of it, too.
+    for (width, height, coarse) in [(200, 160, 2), (201, 159, 2), (100, 101, 3)] {
+        let s = scene(vec![ball(4.0), part("hair", &[bar(true, 6.0)], 0xff_20_20, 1.5)], &[View::Front]);
+        let (fine, coarse) = (bare(width, height), SheetOptions { coarse, ..bare(width, height) });
+        let (fine, coarse) = (draw(&s, &fine), draw(&s, &coarse));
+        assert_eq!((fine.width, fine.height), (coarse.width, coarse.height));
+        let middle = |p: &Picture, is: fn([u8; 3]) -> bool| {
+            let all = (0..p.width * p.height).map(|i| (i % p.width, i / p.width)).filter(|&(x, y)| is(at(p, x, y)));
+            let (n, x, y) =
+                all.fold((0.0, 0.0, 0.0), |(n, a, b), (x, y)| (n + 1.0, a + f64::from(x), b + f64::from(y)));
+            (n, x / n, y / n)
+        };
+        for is in [red as fn([u8; 3]) -> bool, |c: [u8; 3]| c != [255; 3]] {
+            let (a, b) = (middle(&fine, is), middle(&coarse, is));
+            assert!(
+                (a.0 / b.0 - 1.0).abs() < 0.12 && (a.1 - b.1).abs() < 0.5 && (a.2 - b.2).abs() < 0.5,
+                "{a:?} {b:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn any_number_of_views_fits() {
     let all: Vec<View> = View::TEXTS.iter().filter_map(|t| View::parse(t)).collect();
     for n in 0..=7 {
@@ -259,6 +283,7 @@ fn sizes_out_of_range_are_refused() {
         SheetOptions { width: 0, ..SheetOptions::default() },
         SheetOptions { height: 100_000, ..SheetOptions::default() },
         SheetOptions { supersample: 9, ..SheetOptions::default() },
+        SheetOptions { coarse: 0, ..SheetOptions::default() },
         SheetOptions { columns: Some(0), ..SheetOptions::default() },
     ];
     for options in bad {

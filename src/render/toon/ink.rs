@@ -7,6 +7,7 @@ use super::raster::{self, NONE, Nearest, Screen};
 use super::shade::{NO_TILT, Shaded, Weights};
 use super::{Camera, Lock, Toon};
 use crate::math::trig;
+use crate::render::scan;
 
 /// Width of a full line in pixels of a picture 640 pixels wide.
 const LINE: f32 = 2.1;
@@ -141,7 +142,7 @@ impl Tracer<'_> {
             return 0.0;
         }
         let [a, b, c] = raster::corners(&self.screen.points, &self.toon.triangles[side.owner as usize]);
-        raster::gradient(a, b, c).map_or(0.0, |(x, y)| (x * step.x + y * step.y).abs()).min(self.steepest)
+        scan::gradient(a, b, c).map_or(0.0, |(x, y)| (x * step.x + y * step.y).abs()).min(self.steepest)
     }
 
     fn along(&self, side: Side) -> f32 {

@@ -4,6 +4,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::Toon;
+use crate::render::scan::{area, cover, scan};
 
 /// No triangle.
 pub(super) const NONE: u32 = u32::MAX;
@@ -88,94 +89,23 @@ impl<'a> Screen<'a> {
         let mut owner = vec![NONE; self.width * all];
         for &t in self.bins.iter().flat_map(|bins| &bins[band]) {
             let c = corners(&self.points, &self.toon.triangles[t as usize]);
-            self.cover(c, top, all, |from, z, step| {
-                let count = from.len();
-                let (near, of) = (&mut depth[from.clone()], &mut owner[from]);
-                for k in 0..count {
-                    let z = z + step * k as f32;
-                    let nearer = z > near[k];
-                    near[k] = if nearer { z } else { near[k] };
-                    of[k] = if nearer { t } else { of[k] };
-                }
-            });
+            scan(
+                c,
+                top..top + all,
+                self.width,
+                |_| 0.0,
+                |y, range, z, step| {
+                    let row = (y - top) * self.width;
+                    let range = row + range.start..row + range.end;
+                    cover(&mut depth[range.clone()], &mut owner[range], z, step, t);
+                },
+            );
         }
         Nearest { top, rows, all, depth, owner }
     }
-
-    /// Runs over the samples inside a triangle row by row: the samples (counted from row `top`), the first's depth, and
-    /// its growth. Neighbours share edges without gap or overlap: every edge is followed from its upper end.
-    #[inline]
-    fn cover(&self, c: [Vec3; 3], top: usize, rows: usize, mut run: impl FnMut(std::ops::Range<usize>, f32, f32)) {
-        let [mut a, mut b, mut d] = c;
-        let Some(slope) = gradient(a, b, d) else { return };
-        if b.y < a.y {
-            std::mem::swap(&mut a, &mut b);
-        }
-        if d.y < a.y {
-            std::mem::swap(&mut a, &mut d);
-        }
-        if d.y < b.y {
-            std::mem::swap(&mut b, &mut d);
-        }
-        let first = ceil(a.y - 0.5).max(top);
-        let end = ceil(d.y - 0.5).min(top + rows);
-        if first >= end {
-            return;
-        }
-        let per_row = |p: Vec3, q: Vec3| (q.x - p.x) / (q.y - p.y);
-
-        let (long, upper, lower) = (per_row(a, d), per_row(a, b), per_row(b, d));
-        let (least, most) = (a.z.min(b.z).min(d.z), a.z.max(b.z).max(d.z));
-        for y in first..end {
-            let at = y as f32 + 0.5;
-            let x = a.x + (at - a.y) * long;
-            let other = if at < b.y { a.x + (at - a.y) * upper } else { b.x + (at - b.y) * lower };
-            let (from, to) = (ceil(x.min(other) - 0.5), ceil(x.max(other) - 0.5).min(self.width));
-            if from >= to {
-                continue;
-            }
-            let left = from as f32 + 0.5;
-            let z = a.z + slope.0 * (left - a.x) + slope.1 * (at - a.y);
-            // Slivers seen edge-on: rounding must not throw them to the front.
-            let span = (to - from - 1) as f32 * slope.0;
-            let row = (y - top) * self.width;
-            if z < least || z > most || z + span < least || z + span > most {
-                for i in from..to {
-                    let z = (z + (i - from) as f32 * slope.0).clamp(least, most);
-                    run(row + i..row + i + 1, z, 0.0);
-                }
-            } else {
-                run(row + from..row + to, z, slope.0);
-            }
-        }
-    }
-}
-
-/// The least whole number not under `x`; 0 below 0.
-#[inline(always)]
-fn ceil(x: f32) -> usize {
-    let whole = x.max(0.0) as i32;
-    (whole + i32::from((whole as f32) < x)) as usize
 }
 
 #[inline]
 pub(super) fn corners(points: &[Vec3], t: &[u32; 3]) -> [Vec3; 3] {
     [points[t[0] as usize], points[t[1] as usize], points[t[2] as usize]]
-}
-
-/// Twice the area in the picture, negative for triangles that face the viewer.
-#[inline]
-pub(super) fn area(a: Vec3, b: Vec3, c: Vec3) -> f32 {
-    (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
-}
-
-/// Growth of depth per sample to the right and downward; `None` for a triangle seen edge-on.
-#[inline]
-pub(super) fn gradient(a: Vec3, b: Vec3, c: Vec3) -> Option<(f32, f32)> {
-    let whole = area(a, b, c);
-    if whole.abs() < 1e-7 {
-        return None;
-    }
-    let (p, q) = (b - a, c - a);
-    Some(((p.z * q.y - q.z * p.y) / whole, (p.x * q.z - q.x * p.z) / whole))
 }

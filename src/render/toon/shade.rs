@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::raster::{self, NONE, Nearest, Screen};
 use super::{Camera, LAMP, Lock, Tones, Toon};
 use crate::render::depths::Depths;
+use crate::render::scan;
 use crate::task::{Cancelled, Task};
 
 /// Cosine to the lamp below which the third tone begins.
@@ -146,7 +147,7 @@ pub(super) struct Weights {
 impl Weights {
     #[inline]
     pub(super) fn new([a, b, c]: [Vec3; 3]) -> Self {
-        let share = 1.0 / raster::area(a, b, c);
+        let share = 1.0 / scan::area(a, b, c);
         let (p, q) = (b - a, c - a);
         Self { origin: a.truncate(), right: [q.y * share, -p.y * share], down: [-q.x * share, p.x * share] }
     }
@@ -274,7 +275,7 @@ fn setup(toon: &Toon, screen: &Screen, light: &Light, words: &[Words], owner: u3
         let p = |i: usize| toon.vertices[t[i] as usize].position;
         let coarse = high(p(0).distance_squared(p(1)), p(1).distance_squared(p(2)), p(2).distance_squared(p(0)))
             > COARSE * COARSE;
-        let back = raster::area(corners[0], corners[1], corners[2]) > 0.0;
+        let back = scan::area(corners[0], corners[1], corners[2]) > 0.0;
         if back || dark < -MARGIN || high(a.free, b.free, c.free) < -2.0 * MARGIN && !coarse {
             words[1]
         } else if bright > MARGIN && free && !coarse {
