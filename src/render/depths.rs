@@ -104,8 +104,9 @@ impl Depths {
         for (x, y) in RING {
             let s = at + Vec2::new(x, y) * reach;
             let (i, j) = (s.x.clamp(0.0, MAP as f32 - 2.0), s.y.clamp(0.0, MAP as f32 - 2.0));
-            let (fx, fy) = (i - i.floor(), j - j.floor());
-            let k = j as usize * MAP + i as usize;
+            let (column, row) = (i as u32, j as u32);
+            let (fx, fy) = (i - column as f32, j - row as f32);
+            let k = row as usize * MAP + column as usize;
             let lit = |k: usize| (1.0 - (self.nearest[k] - q.z - 0.25) / 0.5).clamp(0.0, 1.0);
             let (lo, hi) = (lit(k) + (lit(k + 1) - lit(k)) * fx, lit(k + MAP) + (lit(k + MAP + 1) - lit(k + MAP)) * fx);
             free += lo + (hi - lo) * fy;

@@ -86,8 +86,8 @@ impl Reach {
 /// How much of the sky reaches each place; the same for all views.
 #[derive(Clone, Debug)]
 pub struct Sky {
-    /// In hair, beside strands and skin.
-    hair: Grid,
+    /// In hair, beside strands and skin: in each cell of the density.
+    hair: Vec<f32>,
     /// On the skin, under strands alone.
     skin: Grid,
 }
@@ -98,7 +98,8 @@ impl Sky {
     /// # Errors
     /// [`Cancelled`].
     pub fn new(density: &Density, task: &Task) -> Result<Self, Cancelled> {
-        Ok(Self { hair: openness(&density.coarse, task)?, skin: openness(&density.coarse_hair, task)? })
+        let hair = density.whole.resampled(&openness(&density.coarse, task)?);
+        Ok(Self { hair, skin: openness(&density.coarse_hair, task)? })
     }
 }
 

@@ -111,7 +111,7 @@ impl Grid {
     }
 
     /// Cells of this grid with the value of another at their middles.
-    fn resampled(&self, other: &Self) -> Vec<f32> {
+    pub fn resampled(&self, other: &Self) -> Vec<f32> {
         let n = self.size;
         (0..self.values.len())
             .into_par_iter()
@@ -366,10 +366,9 @@ pub struct Lights {
 }
 
 impl Lights {
-    /// The openness `sky`, and the transmittance of `density` towards three lamps.
-    pub fn new(density: &Grid, sky: &Grid, lamps: [Vec3; 3]) -> Self {
+    /// The openness `sky` in the cells of `density`, and the transmittance of that towards three lamps.
+    pub fn new(density: &Grid, sky: &[f32], lamps: [Vec3; 3]) -> Self {
         let mut sweeps: Vec<Grid> = lamps.par_iter().map(|&d| transmittance(density, d)).collect();
-        let sky = density.resampled(sky);
         let (c, b, a) = (sweeps.pop(), sweeps.pop(), sweeps.pop());
         let of = |g: &Option<Grid>, i: usize| g.as_ref().map_or(1.0, |g| g.values[i]);
         let values = sky.par_iter().enumerate().map(|(i, &s)| Vec4::new(s, of(&a, i), of(&b, i), of(&c, i))).collect();

@@ -69,8 +69,8 @@ impl Light {
                     // Features are drawn by lines; the lamp sees the head's large form.
                     let n = (v.normal * 0.55 + out * 0.45).normalize_or(v.normal);
                     let cosine = n.dot(lamp) + 0.06;
-                    // What faces away far enough is dark in any case.
-                    let near = cosine > -0.3;
+                    // What faces away far enough is dark in any case, or not seen.
+                    let near = cosine > -0.3 && v.normal.dot(camera.toward) > -0.5;
                     let free = if near { shadow.sample(v.position + v.normal * 0.25 + lamp * 0.15) - 0.5 } else { 0.5 };
                     Lit { lamp: cosine, free, off: 0.0, facing: -1.0, tilt, along, across }
                 } else {
