@@ -40,7 +40,7 @@ pub struct Board {
     notes: String,
     picture: Vec<u8>,
     /// The picture that is in place.
-    file: Option<PathBuf>,
+    file: Option<Box<Path>>,
     is_news: bool,
 }
 
@@ -195,7 +195,7 @@ mod tests {
     use super::*;
 
     fn shown(summary: &str, notes: &str) -> Shown {
-        let file = Some(PathBuf::from("bob.png"));
+        let file = Some(Path::new("bob.png").into());
         Shown { summary: summary.into(), notes: notes.into(), picture: vec![1], file, event: serde_json::Value::Null }
     }
 

@@ -4,7 +4,7 @@ mod board;
 mod events;
 
 use std::io::{IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -44,7 +44,7 @@ struct Shown {
     /// Bytes that draw the picture.
     picture: Vec<u8>,
     /// The picture.
-    file: Option<PathBuf>,
+    file: Option<Box<Path>>,
     /// The same for programs, without the number of the run.
     event: Value,
 }
@@ -164,7 +164,7 @@ impl Runner<'_> {
         match &report.written {
             Ok(written) => {
                 let summary = text::summary(report, written, self.timings && event == "finished");
-                let file = show::first(written).filter(|_| event != "exported").map(Path::to_path_buf);
+                let file: Option<Box<Path>> = show::first(written).filter(|_| event != "exported").map(Into::into);
                 let picture = self.picture(file.as_deref(), &summary, &notes);
                 Ok(Shown { summary, notes, picture, file, event: events::good(event, report, written) })
             }
