@@ -174,13 +174,14 @@ fn last_block(shown: &str) -> (usize, usize) {
 fn below_an_error_the_picture_leaves_room_for_the_state() {
     let (dir, script) = folder("return coif.scene { coif.head(), views = { 'front' } }");
     let ended = |wrong: Option<&str>| {
-        let mut terminal = Terminal::new(coif(dir.path(), &["watch", "style.lua", "--size", "160", "--show"]));
+        let terminal = Terminal::new(coif(dir.path(), &["watch", "style.lua", "--size", "160", "--show"]));
         terminal.shows("style.glb", 0);
         if let Some(wrong) = wrong {
             std::fs::write(&script, wrong).unwrap();
             terminal.shows("stale, from run 1", 0);
         }
-        terminal.typed.write_all(b"\x03").unwrap();
+        // Not by Ctrl-C, for which a terminal throws away what it has not shown yet.
+        interrupt(&terminal.process);
         terminal.shows("stopped", 0);
         last_block(&terminal.text())
     };
