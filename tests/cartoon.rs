@@ -128,6 +128,35 @@ fn every_cartoon_style_is_sound() {
 }
 
 #[test]
+fn cloth_has_two_sides_and_usd_numbers_tufts() {
+    let (scene, _) = script("examples/garments/held_back.lua", &[]);
+    let bytes = glb(&scene, &GlbOptions::default(), &Task::new()).unwrap();
+    let (document, ..) = gltf::import_slice(&bytes).unwrap();
+    let mut cloth = 0;
+    for node in document.nodes().filter(|n| n.mesh().is_some()) {
+        let extras: serde_json::Value = serde_json::from_str(node.extras().as_ref().unwrap().get()).unwrap();
+        let is_cloth = node.name().unwrap().starts_with("garment");
+        assert_eq!(extras["coif"]["kind"] == "garment", is_cloth, "{extras}");
+        for primitive in node.mesh().unwrap().primitives() {
+            assert_eq!(primitive.material().double_sided(), is_cloth, "{extras}");
+        }
+        cloth += usize::from(is_cloth);
+    }
+    assert!(cloth > 0);
+    let text = String::from_utf8(usda(&scene, &UsdaOptions::default(), &Task::new()).unwrap()).unwrap();
+    assert_eq!(text.matches("bool doubleSided = 1").count(), cloth);
+
+    let (scene, _) = script("examples/cartoon/twin_tails.lua", &[]);
+    let locks = tufts(&scene);
+    let text = String::from_utf8(usda(&scene, &UsdaOptions::default(), &Task::new()).unwrap()).unwrap();
+    let (_, from) = text.split_once("def Mesh \"tufts\"").unwrap();
+    let (_, list) = from.split_once("int[] primvars:coif_tuft = [").unwrap();
+    let (list, _) = list.split_once(']').unwrap();
+    let numbers: Vec<u32> = list.split(',').map(|n| n.trim().parse().unwrap()).collect();
+    assert_eq!(numbers, locks.mesh.tuft);
+}
+
+#[test]
 fn tufts_in_glb_have_tangents_colours_and_numbers() {
     let (scene, _) = script("examples/cartoon/twin_tails.lua", &[]);
     let locks = tufts(&scene);

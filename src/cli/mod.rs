@@ -115,8 +115,8 @@ fn command_run(arguments: &RunArguments) -> u8 {
             if !arguments.quiet {
                 say(&text::summary(&report, written, arguments.timings));
             }
-            if let Some(protocol) = arguments.show.and_then(Show::protocol) {
-                let _ = std::io::stderr().write_all(&show::picture(written, protocol, 2));
+            if let Some((protocol, file)) = arguments.show.and_then(Show::protocol).zip(show::first(written)) {
+                let _ = std::io::stderr().write_all(&show::picture(file, protocol, 2));
             }
             if arguments.stats {
                 print(&text::stats(&report, written));

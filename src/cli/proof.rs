@@ -51,6 +51,7 @@ pub struct SheetArguments {
 #[derive(Args, Debug)]
 pub struct TestArguments {
     /// A test file, or a folder to search for *_test.lua
+    #[arg(default_value = ".")]
     pub path: PathBuf,
     /// Run only tests whose name or file contains this
     #[arg(long, value_name = "TEXT")]

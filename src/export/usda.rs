@@ -80,7 +80,7 @@ pub fn usda(scene: &Scene, options: &UsdaOptions, task: &Task) -> Result<Vec<u8>
                 mesh.validate().map_err(|error| ExportError::Mesh { part: part.name.clone(), error })?;
                 let colour = |v: usize| locks.look(locks.mesh.tuft[v] as usize).along(locks.place(v).y);
                 let colours: Vec<Vec3> = (0..mesh.positions.len()).map(colour).collect();
-                out.mesh(&name, part, &with_normals(mesh), Some(&colours), &binding, task)?;
+                out.mesh(&name, part, &with_normals(mesh), Some((&colours, &locks.mesh.tuft)), &binding, task)?;
                 let first = locks.look(0);
                 let look = MeshMaterial { colour: first.colour, roughness: first.roughness };
                 materials.push(Material { name, inputs: surface(&look), fallback: Some(look.colour.to_linear()) });
@@ -233,12 +233,16 @@ impl Writer {
         name: &str,
         part: &Part,
         mesh: &Mesh,
-        colours: Option<&[Vec3]>,
+        locks: Option<(&[Vec3], &[u32])>,
         binding: &str,
         task: &Task,
     ) -> Result<(), ExportError> {
         self.head("Mesh", name, part, mesh.bounds(), binding)?;
         self.line(2, "uniform token subdivisionScheme = \"none\"")?;
+        if part.is_garment() {
+            // Cloth is seen from inside too: in a sleeve, below a hem.
+            self.line(2, "uniform bool doubleSided = 1")?;
+        }
         let number = |out: &mut Vec<u8>, n: &u32| out.extend_from_slice(n.to_string().as_bytes());
         let triangle = |out: &mut Vec<u8>, t: &[u32; 3]| {
             out.extend_from_slice(format!("{}, {}, {}", t[0], t[1], t[2]).as_bytes());
@@ -247,8 +251,9 @@ impl Writer {
         self.array("int[] faceVertexIndices", &mesh.triangles, triangle, "", task)?;
         self.array("point3f[] points", &mesh.positions, |o, p| tuple(o, &p.to_array()), "", task)?;
         self.array("normal3f[] normals", &mesh.normals, |o, n| tuple(o, &n.to_array()), VERTEX, task)?;
-        if let Some(colours) = colours {
+        if let Some((colours, tufts)) = locks {
             self.array("color3f[] primvars:displayColor", colours, |o, c| tuple(o, &c.to_array()), VERTEX, task)?;
+            self.array("int[] primvars:coif_tuft", tufts, number, VERTEX, task)?;
         }
         if !mesh.uvs.is_empty() {
             self.array("texCoord2f[] primvars:st", &mesh.uvs, |o, uv| tuple(o, &uv.to_array()), VERTEX, task)?;

@@ -59,7 +59,11 @@ pub fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
     names
         .into_iter()
         .map(|name| (strsim::damerau_levenshtein(&wrong.to_lowercase(), &name.to_lowercase()), name))
-        .filter(|&(distance, name)| distance <= 1 + name.len().max(wrong.len()) / 4)
+        .filter(|&(distance, name)| {
+            // Two changes make any short word of any other: `pairs` of `hair`.
+            let most = if wrong.len() <= 4 { 1 } else { 1 + name.len().max(wrong.len()) / 4 };
+            distance <= most
+        })
         .min()
         .map(|(_, name)| name)
 }
@@ -111,6 +115,9 @@ impl Reader {
                 let hint = match nearest(key, named()) {
                     Some(name) => format!("did you mean `{name}`?"),
                     None if named().next().is_none() => format!("`{owner}` takes no named fields"),
+                    None if matches!(key.as_str(), "color" | "colour") && named().any(|n| n == "material") => {
+                        "colours are in `material`".to_owned()
+                    }
                     None => format!("`{owner}` takes {}", named().collect::<Vec<_>>().join(", ")),
                 };
                 self.problem::<()>(format!("unknown field `{key}`"), Some(hint));

@@ -163,6 +163,34 @@ fn a_terminal_shows_the_picture() {
     assert_eq!(terminal.process.exit_code(), Some(130));
 }
 
+/// The rows of a picture in half blocks that is last in what was shown, and the lines of text above it.
+fn last_block(shown: &str) -> (usize, usize) {
+    let block = shown.rsplit("\x1b[2J").next().unwrap();
+    let (text, picture): (Vec<&str>, Vec<&str>) = block.lines().partition(|l| !l.contains('▀'));
+    (picture.len(), text.len())
+}
+
+#[test]
+fn below_an_error_the_picture_leaves_room_for_the_state() {
+    let (dir, script) = folder("return coif.scene { coif.head(), views = { 'front' } }");
+    let ended = |wrong: Option<&str>| {
+        let terminal = Terminal::new(coif(dir.path(), &["watch", "style.lua", "--size", "160", "--show"]));
+        terminal.shows("style.glb", 0);
+        if let Some(wrong) = wrong {
+            std::fs::write(&script, wrong).unwrap();
+            terminal.shows("stale, from run 1", 0);
+        }
+        // Not by Ctrl-C, for which a terminal throws away what it has not shown yet.
+        interrupt(&terminal.process);
+        terminal.shows("stopped", 0);
+        last_block(&terminal.text())
+    };
+    let (rows, lines) = ended(None);
+    assert!(rows > 20 && rows + lines <= 40, "{rows} of the picture, {lines} of text");
+    let (fewer, lines) = ended(Some("return coif.scene { coif.head(), veiws = { 'front' } }"));
+    assert!(fewer < rows && fewer + lines <= 40, "{fewer} of the picture, {lines} of text");
+}
+
 /// A running process whose lines arrive one by one.
 fn piped(mut command: Command, is_stdout: bool) -> (Process, Receiver<String>) {
     let (out, err) = if is_stdout { (Stdio::piped(), Stdio::null()) } else { (Stdio::null(), Stdio::piped()) };

@@ -39,6 +39,8 @@ pub struct Board {
     exported: String,
     notes: String,
     picture: Vec<u8>,
+    /// The picture that is in place.
+    file: Option<Box<Path>>,
     is_news: bool,
 }
 
@@ -58,6 +60,7 @@ impl Board {
             exported: String::new(),
             notes: String::new(),
             picture: vec![],
+            file: None,
             is_news: false,
         }
     }
@@ -99,7 +102,7 @@ impl Board {
     pub fn draft(&mut self, shown: Shown) -> String {
         (self.state, self.good_run, self.is_draft, self.is_news) = (State::Drafted, Some(self.run), true, true);
         self.exported.clear();
-        (self.summary, self.notes, self.picture) = (shown.summary, shown.notes, shown.picture);
+        (self.summary, self.notes, self.picture, self.file) = (shown.summary, shown.notes, shown.picture, shown.file);
         format!("run {}: draft\n{}", self.run, self.summary)
     }
 
@@ -107,7 +110,7 @@ impl Board {
     pub fn picture(&mut self, shown: Shown) -> String {
         (self.state, self.good_run, self.is_draft, self.is_news) = (State::Exporting, Some(self.run), false, true);
         self.exported.clear();
-        (self.summary, self.notes, self.picture) = (shown.summary, shown.notes, shown.picture);
+        (self.summary, self.notes, self.picture, self.file) = (shown.summary, shown.notes, shown.picture, shown.file);
         format!("run {}: picture\n{}{}", self.run, self.summary, self.notes)
     }
 
@@ -131,6 +134,13 @@ impl Board {
         let line = format!("no events here ({reason}): looking regularly instead");
         self.polling = Some(line.clone());
         format!("{line}\n")
+    }
+
+    /// Has the picture drawn anew below an error, which takes room that was the picture's.
+    pub fn fit_picture(&mut self, draw: impl FnOnce(&Path, &str) -> Vec<u8>) {
+        if let (State::Failed, Some(file)) = (self.state, &self.file) {
+            self.picture = draw(file, &self.block(false));
+        }
     }
 
     /// The bytes of the picture; they are kept for the next block if `is_kept`.
@@ -185,7 +195,8 @@ mod tests {
     use super::*;
 
     fn shown(summary: &str, notes: &str) -> Shown {
-        Shown { summary: summary.into(), notes: notes.into(), picture: vec![1], event: serde_json::Value::Null }
+        let file = Some(Path::new("bob.png").into());
+        Shown { summary: summary.into(), notes: notes.into(), picture: vec![1], file, event: serde_json::Value::Null }
     }
 
     #[test]
@@ -207,6 +218,15 @@ mod tests {
         }
         assert!(board.block(false).contains("12 strands"), "what is known of the stale picture stays");
         assert_eq!(board.take_picture(true), [1]);
+        board.fit_picture(|file, block| {
+            assert!(file == Path::new("bob.png") && block.contains("error: again"));
+            vec![2]
+        });
+        assert_eq!(board.take_picture(true), [2], "the stale picture is drawn anew where there is room");
+        board.started(4, &BTreeSet::new());
+        board.picture(shown("", ""));
+        board.fit_picture(|_, _| vec![3]);
+        assert_eq!(board.take_picture(true), [1], "without an error it stays as it is");
     }
 
     #[test]

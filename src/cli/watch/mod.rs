@@ -4,6 +4,7 @@ mod board;
 mod events;
 
 use std::io::{IsTerminal, Write};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -17,7 +18,7 @@ use crate::script::{Disk, Files, show_all};
 use crate::task::Task;
 use crate::workbench::terminal::Protocol;
 use crate::workbench::watch::{Ended, Notice, Watch, WatchOptions};
-use crate::workbench::{self, Report, RunError, RunOptions, Written, draft};
+use crate::workbench::{self, Report, RunError, RunOptions, draft};
 
 use board::Board;
 
@@ -34,6 +35,7 @@ enum Told {
 }
 
 /// Something to print.
+#[derive(Default)]
 struct Shown {
     /// Counts, times, files.
     summary: String,
@@ -41,6 +43,8 @@ struct Shown {
     notes: String,
     /// Bytes that draw the picture.
     picture: Vec<u8>,
+    /// The picture.
+    file: Option<Box<Path>>,
     /// The same for programs, without the number of the run.
     event: Value,
 }
@@ -79,6 +83,7 @@ pub fn watch(arguments: &WatchArguments) -> u8 {
         progress: Arc::clone(&progress),
         is_json: arguments.json,
         is_terminal: std::io::stderr().is_terminal(),
+        protocol: runner.protocol,
     };
     out.begin(arguments.poll);
     let files: Arc<dyn Files> = Arc::new(Disk);
@@ -159,13 +164,12 @@ impl Runner<'_> {
         match &report.written {
             Ok(written) => {
                 let summary = text::summary(report, written, self.timings && event == "finished");
-                let picture = if event == "exported" { vec![] } else { self.picture(written, &summary, &notes) };
-                Ok(Shown { summary, notes, picture, event: events::good(event, report, written) })
+                let file: Option<Box<Path>> = show::first(written).filter(|_| event != "exported").map(Into::into);
+                let picture = self.picture(file.as_deref(), &summary, &notes);
+                Ok(Shown { summary, notes, picture, file, event: events::good(event, report, written) })
             }
             Err(RunError::Cancelled) => Err(None),
-            Err(RunError::Script) => {
-                Err(Some(Shown { summary: String::new(), notes, picture: vec![], event: events::bad(outcome) }))
-            }
+            Err(RunError::Script) => Err(Some(Shown { notes, event: events::bad(outcome), ..Shown::default() })),
             Err(
                 error @ (RunError::Render(_)
                 | RunError::Png(_)
@@ -176,9 +180,9 @@ impl Runner<'_> {
         }
     }
 
-    fn picture(&self, written: &[Written], summary: &str, notes: &str) -> Vec<u8> {
-        let lines = summary.lines().count() + notes.lines().count() + board::LINES;
-        self.protocol.map_or_else(Vec::new, |protocol| show::picture(written, protocol, lines))
+    fn picture(&self, file: Option<&Path>, summary: &str, notes: &str) -> Vec<u8> {
+        let Some((protocol, file)) = self.protocol.zip(file) else { return vec![] };
+        show::picture(file, protocol, show::lines(summary) + show::lines(notes) + board::LINES)
     }
 }
 
@@ -186,7 +190,7 @@ impl Shown {
     /// An error that is not about a place in the script.
     fn message(message: String) -> Self {
         let notes = format!("error: {message}\n");
-        Self { summary: String::new(), notes, picture: vec![], event: events::message(&message) }
+        Self { notes, event: events::message(&message), ..Self::default() }
     }
 }
 
@@ -196,6 +200,7 @@ struct Out {
     progress: Arc<Progress>,
     is_json: bool,
     is_terminal: bool,
+    protocol: Option<Protocol>,
 }
 
 impl Out {
@@ -235,6 +240,9 @@ impl Out {
             say(&lines);
             self.paint();
         } else if self.board.is_news() {
+            if let Some(protocol) = self.protocol {
+                self.board.fit_picture(|file, block| show::picture(file, protocol, show::lines(block)));
+            }
             self.draw();
         }
     }

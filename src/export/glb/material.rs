@@ -16,7 +16,7 @@ const LINEAR: u32 = 9729;
 const CLAMP: u32 = 33071;
 
 /// The material of a surface; its index.
-pub fn surface(document: &mut Document, name: &str, look: &MeshMaterial) -> u32 {
+pub fn surface(document: &mut Document, name: &str, look: &MeshMaterial, is_double_sided: bool) -> u32 {
     push(
         document,
         Material {
@@ -27,7 +27,7 @@ pub fn surface(document: &mut Document, name: &str, look: &MeshMaterial) -> u32 
                 metallic_factor: 0.0,
                 roughness_factor: look.roughness.clamp(0.0, 1.0),
             },
-            double_sided: false,
+            double_sided: is_double_sided,
             extensions: None,
             extras: None,
         },

@@ -91,8 +91,10 @@ pub fn glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Vec<u8>, 
                 let mesh = with_normals(mesh);
                 let (attributes, vertices, indices) = shapes::surface_layout(&mesh);
                 let slot = file.plan.primitive(&mut file.document, &attributes, vertices, indices);
-                let material = material::surface(&mut file.document, &part.name, look);
-                let extras = PartExtras { kind: "head", source: part.source.clone(), ..PartExtras::default() };
+                // Cloth is seen from inside too: in a sleeve, below a hem.
+                let material = material::surface(&mut file.document, &part.name, look, part.is_garment());
+                let kind = if part.is_garment() { "garment" } else { "head" };
+                let extras = PartExtras { kind, source: part.source.clone(), ..PartExtras::default() };
                 let place = file.part(part, Some((&slot, material, document::TRIANGLES)), extras);
                 file.surface(part, place, &mesh, task)?;
                 file.jobs.push(Job::Surface(mesh, slot));

@@ -62,6 +62,10 @@ crate::params! {
     }
 }
 
+/// What to write where a colour's name was written.
+const MATERIAL_HINT: &str =
+    "write `{ root_colour = \"#3a1d12\", tip_colour = \"#7d4427\" }`, or take one of `require \"coif/looks\"`";
+
 /// A hair material, given as one or by its fields.
 #[derive(Clone, Debug)]
 pub struct Look(HairMaterial);
@@ -78,7 +82,10 @@ impl crate::params::FieldType for Look {
                 None => reader.wrong_type("a HairMaterial", value),
             },
             Value::Table(table) => crate::params::Params::read(table, reader).map(Self),
-            other => reader.wrong_type("a HairMaterial, or its fields in braces", other),
+            other => reader.problem(
+                format!("expected a HairMaterial, or its fields in braces, got {} `{other}`", other.type_name()),
+                Some(MATERIAL_HINT.to_owned()),
+            ),
         }
     }
 }

@@ -57,6 +57,11 @@ impl Protocol {
         if ["foot", "mlterm", "contour", "yaft"].iter().any(|t| term.starts_with(t)) || term.contains("sixel") {
             return Self::Sixel;
         }
+        // Since 22.04; a terminal of another make that was started from it has another `TERM` or names itself.
+        let konsole = variable("KONSOLE_VERSION").and_then(|v| v.parse::<u32>().ok());
+        if konsole.is_some_and(|v| v >= 220_400) && term.starts_with("xterm") && variable("XTERM_VERSION").is_none() {
+            return Self::Iterm;
+        }
         Self::Half
     }
 }
@@ -72,16 +77,21 @@ pub struct Window {
     pub cell: Option<(u32, u32)>,
     /// True when colours may have 24 bits; otherwise 256 colours are used.
     pub is_true_colour: bool,
+    /// The largest sixel picture that it draws, in pixels; none for no such limit.
+    pub most: Option<(u32, u32)>,
 }
 
 impl Default for Window {
     fn default() -> Self {
-        Self { columns: 80, rows: 24, cell: None, is_true_colour: true }
+        Self { columns: 80, rows: 24, cell: None, is_true_colour: true, most: None }
     }
 }
 
 /// Pixels of a character where the terminal does not tell: about that of the usual fonts.
 const USUAL_CELL: (u32, u32) = (9, 18);
+
+/// What xterm draws at most unless its resource `maxGraphicSize` says otherwise; of a larger picture it draws nothing.
+pub const XTERM_MOST: (u32, u32) = (1000, 1000);
 
 /// A picture that cannot be shown.
 #[derive(Debug, thiserror::Error)]
@@ -125,7 +135,11 @@ fn fit(pixels: &Pixels, protocol: Protocol, window: &Window, taken: u32) -> (u32
         Protocol::Kitty | Protocol::Iterm | Protocol::Sixel => window.cell.unwrap_or(USUAL_CELL),
     };
     let rows = window.rows.saturating_sub(taken + 1).max(4);
-    let (width, height) = scaled(pixels, (window.columns.max(4) * cell.0, rows * cell.1));
+    let (mut columns, mut rows) = (window.columns.max(4), rows);
+    if let (Protocol::Sixel, Some(most)) = (protocol, window.most) {
+        (columns, rows) = (columns.min(most.0 / cell.0).max(1), rows.min(most.1 / cell.1).max(1));
+    }
+    let (width, height) = scaled(pixels, (columns * cell.0, rows * cell.1));
     (width.div_ceil(cell.0).max(1), height.div_ceil(cell.1).max(1))
 }
 

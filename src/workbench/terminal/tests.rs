@@ -22,6 +22,11 @@ fn terminals_are_told_by_their_environment() {
     assert_eq!(detect(&[("TERM_PROGRAM", "iTerm.app")]), Protocol::Iterm);
     assert_eq!(detect(&[("TERM", "foot")]), Protocol::Sixel);
     assert_eq!(detect(&[("TERM", "tmux-256color"), ("KITTY_WINDOW_ID", "1")]), Protocol::Half);
+    let konsole = ("KONSOLE_VERSION", "221203");
+    assert_eq!(detect(&[("TERM", "xterm-256color"), konsole]), Protocol::Iterm);
+    assert_eq!(detect(&[("TERM", "xterm-256color"), ("KONSOLE_VERSION", "211203")]), Protocol::Half);
+    assert_eq!(detect(&[("TERM", "xterm"), konsole, ("XTERM_VERSION", "XTerm(379)")]), Protocol::Half);
+    assert_eq!(detect(&[("TERM", "foot"), konsole]), Protocol::Sixel);
     for name in Protocol::TEXTS {
         assert!(Protocol::parse(name).is_some());
     }
@@ -30,12 +35,16 @@ fn terminals_are_told_by_their_environment() {
 #[test]
 fn a_picture_fits_and_keeps_its_shape() {
     let (wide, _) = picture(400, 100, |_, _| [0; 3]);
-    let window = Window { columns: 80, rows: 24, cell: Some((10, 20)), is_true_colour: true };
+    let window = Window { cell: Some((10, 20)), ..Window::default() };
     assert_eq!(fit(&wide, Protocol::Kitty, &window, 0), (40, 5), "not enlarged");
     assert_eq!(fit(&wide, Protocol::Half, &window, 0), (80, 10));
     let (tall, _) = picture(300, 3000, |_, _| [0; 3]);
     let (columns, rows) = fit(&tall, Protocol::Kitty, &window, 5);
     assert_eq!((columns, rows), (4, 18));
+    let (large, _) = picture(1920, 900, |_, _| [0; 3]);
+    let window = Window { columns: 150, rows: 60, most: Some(XTERM_MOST), ..window };
+    assert_eq!(fit(&large, Protocol::Kitty, &window, 0), (150, 36));
+    assert_eq!(fit(&large, Protocol::Sixel, &window, 0), (100, 24), "no more than xterm draws");
     // A window that is all taken still shows something.
     assert_eq!(fit(&tall, Protocol::Half, &window, 500).1, 4);
 }
