@@ -15,7 +15,7 @@ use coif::task::Task;
 use coif::workbench::watch::{Ended, Stop, Watch, WatchOptions};
 
 /// Longest wait for something that must happen.
-const PATIENCE: Duration = Duration::from_secs(20);
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// How long we look that something does not happen: several times the quiet period.
 const CALM: Duration = Duration::from_millis(400);
@@ -56,6 +56,11 @@ impl Drop for Bench {
 impl Bench {
     /// A watch over files of a fresh folder, after its first run.
     fn new(setup: impl FnOnce(&Path, &Tally), poll: bool) -> Self {
+        Self::with(Arc::new(Disk), setup, poll)
+    }
+
+    /// The same, with files that are read in another way.
+    fn with(files: Arc<dyn Files>, setup: impl FnOnce(&Path, &Tally), poll: bool) -> Self {
         let dir = tempfile::tempdir().unwrap();
         let tally = Arc::new(Tally::default());
         setup(dir.path(), &tally);
@@ -65,7 +70,6 @@ impl Bench {
         let thread = std::thread::spawn({
             let tally = Arc::clone(&tally);
             move || {
-                let files: Arc<dyn Files> = Arc::new(Disk);
                 let run = |task: &Task, files: Arc<dyn Files>, _: &(dyn Fn(()) + Sync)| stand_in(&tally, task, &*files);
                 watch.watch(&files, run, |notice| tally.notices.lock().unwrap().push(format!("{notice:?}")));
             }
@@ -260,6 +264,41 @@ fn only_what_the_last_run_asked_for() {
     bench.write("other.lua", "z");
     bench.calm();
     assert_eq!(bench.runs(), runs, "{}", bench.story());
+}
+
+/// A disk on which `other.lua` is saved just after it was read, before the watch can be told of it.
+struct Hasty(AtomicBool);
+
+impl Files for Hasty {
+    fn read(&self, path: &Path) -> std::io::Result<Vec<u8>> {
+        let read = Disk.read(path);
+        if path.ends_with("other.lua") && !self.0.swap(true, Ordering::SeqCst) {
+            std::fs::write(path, "y")?;
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        read
+    }
+
+    fn list(&self, folder: &Path) -> Vec<String> {
+        Disk.list(folder)
+    }
+
+    fn resolve(&self, path: &Path) -> std::io::Result<PathBuf> {
+        Disk.resolve(path)
+    }
+}
+
+#[test]
+fn a_file_saved_between_its_first_reading_and_the_watch_hearing_of_it() {
+    let setup = |dir: &Path, tally: &Tally| {
+        std::fs::write(dir.join("style.lua"), "1").unwrap();
+        std::fs::write(dir.join("other.lua"), "x").unwrap();
+        tally.reads.lock().unwrap().push(dir.join("style.lua"));
+    };
+    let bench = Bench::with(Arc::new(Hasty(AtomicBool::new(false))), setup, false);
+    bench.tally.reads.lock().unwrap().push(bench.path("other.lua"));
+    bench.write("style.lua", "2");
+    bench.sees("2|y");
 }
 
 #[cfg(unix)]

@@ -289,7 +289,13 @@ impl State {
                     }
                 }
             }
-            Message::Asked(path) => self.is_displaced |= self.depends.insert(path),
+            Message::Asked(path) => {
+                // It may have been saved since it was read, and the sign of that was about a path not yet known.
+                if self.depends.insert(path.clone()) {
+                    self.is_displaced = true;
+                    self.touch(BTreeSet::from([path]));
+                }
+            }
             Message::Told(what) => {
                 if !self.is_stopped {
                     notice(Notice::Told(what));
