@@ -298,7 +298,7 @@ fn a_draft_comes_first_where_there_is_much_hair() {
             let event = next();
             assert_eq!(event["event"], *name, "{event}");
             if *name == "draft" {
-                assert_eq!((event["members"].as_u64(), event["of"].as_u64()), (Some(6000), Some(6500)));
+                assert_eq!((event["members"].as_u64(), event["of"].as_u64()), (Some(4000), Some(6500)));
                 assert!(event["files"][0]["path"].as_str().unwrap().ends_with("style.png"));
             }
         }

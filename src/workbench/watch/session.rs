@@ -291,7 +291,7 @@ impl State {
             }
             Message::Asked(path) => {
                 // It may have been saved since it was read, and the sign of that was about a path not yet known.
-                if self.depends.insert(path.clone()) {
+                if !self.own().contains(&location(&path)) && self.depends.insert(path.clone()) {
                     self.is_displaced = true;
                     self.touch(BTreeSet::from([path]));
                 }
@@ -333,10 +333,15 @@ impl State {
         }
     }
 
+    /// Where the runs write.
+    fn own(&self) -> BTreeSet<PathBuf> {
+        self.outputs.iter().map(|o| location(o)).collect()
+    }
+
     /// Finds out where to listen and listens there.
     fn find_places<E>(&mut self, notice: &mut impl FnMut(Notice<E>)) {
         self.is_displaced = false;
-        let own: BTreeSet<PathBuf> = self.outputs.iter().map(|o| location(o)).collect();
+        let own = self.own();
         self.depends.retain(|d| !own.contains(&location(d)));
         self.places = Places::of(&self.depends);
         let Some(ears) = self.ears.as_mut() else { return };
