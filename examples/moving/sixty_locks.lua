@@ -18,11 +18,11 @@ local rows = {
   { 14, 13, 12.5, 4.1, "#5f2f74" },
   { 34, 12, 14.0, 4.6, "#763681" },
   { 54, 11, 14.5, 5.2, "#8f3f8a" },
-  { 74, 10, 14.0, 5.8, "#a84b8c" },
+  { 80, 10, 14.0, 6.2, "#a84b8c" },
 }
 local looks = {}
 for row, place in rows do
-  looks[row] = coif.material.tuft { colour = if row == 1 then p.roots else place[5], tip_colour = p.tips, shine = 0.5 }
+  looks[row] = coif.material.tuft { colour = if row == 1 then p.roots else place[5], tip_colour = p.tips, shine = 0 }
 end
 
 -- Where the locks grow, from the head's left ear around the back to the right one, so that a gust can go along them.
@@ -39,11 +39,12 @@ table.sort(places, function(a, b) return if a.azimuth ~= b.azimuth then a.azimut
 local function fall(place, push, lift)
   local azimuth, elevation, width = place.azimuth, rows[place.row][1], rows[place.row][4]
   local below = math.min(elevation - 22, 6)
-  local edge  = at(azimuth, below, 1.1 + 0.28 * place.row)
+  local edge  = at(azimuth, below, 1.1 + 0.34 * place.row)
   local out   = vector.normalize(vector.create(edge.x, 0, edge.z))
   local points = {
     at(azimuth, elevation), at(azimuth, elevation - 6, 0.7 + 0.1 * place.row),
-    at(azimuth, 0.5 * (elevation + below), 1.0 + 0.22 * place.row), edge,
+    at(azimuth, 0.7 * elevation + 0.3 * below, 0.9 + 0.32 * place.row),
+    at(azimuth, 0.35 * elevation + 0.65 * below, 1.0 + 0.35 * place.row), edge,
   }
   for i = 1, 4 do
     local t = i / 4
@@ -74,12 +75,12 @@ local moving = coif.animate {
 }
 
 local front = {}
-for _, lock in { { -60, -4, 36 }, { -44, -6, 22 }, { -28, -8, 15 }, { -12, -8, 12 }, { 4, -5, 11 }, { 19, 6, 13 }, { 34, 7, 17 }, { 49, 6, 24 }, { 62, 4, 37 } } do
+for _, lock in { { -62, -4, 66 }, { -46, -6, 50 }, { -30, -8, 38 }, { -13, -8, 32 }, { 4, -5, 30 }, { 20, 6, 33 }, { 35, 7, 39 }, { 50, 6, 51 }, { 64, 4, 67 } } do
   table.insert(front, coif.tuft {
     stroke = {
-      at(lock[1], 66), at(lock[1], 52, 2.0), at(lock[1] + 0.4 * lock[2], 35, 1.9), at(lock[1] + lock[2], 35 - lock[3], 1.0),
+      at(lock[1], 84), at(lock[1], 62, 2.2), at(lock[1] + 0.4 * lock[2], 42, 2.1), at(lock[1] + lock[2], 38 - lock[3], 1.1),
     },
-    profile = { { 0, 1.4, 0.8 }, { 0.45, 4.4, 1.2 }, { 0.8, 2.6, 0.8 }, { 1, 0, 0 } },
+    profile = { { 0, 1.4, 0.8 }, { 0.45, 5.2, 1.2 }, { 0.8, 2.8, 0.8 }, { 1, 0, 0 } },
     bend = 40, material = looks[5], lift = true,
   })
 end

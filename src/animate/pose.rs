@@ -461,7 +461,8 @@ fn solved(matrix: &Square, small: &Small, n: usize, damping: f64, least: f64) ->
                 return None;
             }
             // Rounding may leave nothing of a direction that makes no difference.
-            l[i][j] = if i == j { rest.max(FLOOR * FLOOR * greatest + f64::MIN_POSITIVE).sqrt() } else { rest / l[j][j] };
+            l[i][j] =
+                if i == j { rest.max(FLOOR * FLOOR * greatest + f64::MIN_POSITIVE).sqrt() } else { rest / l[j][j] };
         }
     }
     for i in 0..n {

@@ -141,7 +141,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "FORM", default_value = "ribbons", value_parser = form)]
     pub strands: StrandForm,
     /// Farthest that a strand in the GLB may lie from its true course, and what moves from its place at any frame; 0.1 when
-    /// left out, in motion a hundredth of their way for strands that move farther than 10 cm
+    /// left out, in motion a fiftieth of their way for strands that move farther than 5 cm
     #[arg(long, value_name = "CM", value_parser = tolerance)]
     pub tolerance: Option<f32>,
     /// How strands that move are written in the GLB [auto, shapes, joints]

@@ -36,7 +36,9 @@ pub enum ExportError {
         what: &'static str,
     },
     /// Strands that move want more joints than a file can number.
-    #[error("part `{part}`: its motion cannot be kept within {tolerance} cm by joints: allow more, or write it as shapes")]
+    #[error(
+        "part `{part}`: its motion cannot be kept within {tolerance} cm by joints: allow more, or write it as shapes"
+    )]
     Joints {
         /// Name of the part.
         part: String,

@@ -17,7 +17,7 @@ use crate::task::{Cancelled, Task};
 
 use self::text::{Names, decimal, quoted, tuple};
 use super::reduce::{Block, reduce};
-use super::{ExportError, appearance, check_hair, check_motion, check_tolerance, with_normals, frames_of};
+use super::{ExportError, appearance, check_hair, check_motion, check_tolerance, frames_of, with_normals};
 
 crate::params! {
     /// How a scene is written as USD.

@@ -210,9 +210,10 @@ fn joints(way: &Way, tolerance: f32) -> Vec<usize> {
             for k in w[0] + 1..w[1] {
                 let p = way.rest[k];
                 let pairs = || {
-                    frames.iter().zip(&moved).map(|(&f, m)| {
-                        (m[a].transform_point3(p), m[a + 1].transform_point3(p), way.frames[f][k])
-                    })
+                    frames
+                        .iter()
+                        .zip(&moved)
+                        .map(|(&f, m)| (m[a].transform_point3(p), m[a + 1].transform_point3(p), way.frames[f][k]))
                 };
                 let (mut above, mut below) = (0.0, 1e-12);
                 for (x, y, wanted) in pairs() {
@@ -262,12 +263,10 @@ impl Chain {
             };
             let parent = |f: usize| if k == 0 { Quat::IDENTITY } else { global[f][k - 1] };
             let kept = |f: usize, at: &[Vec3]| at[f] + parent(f) * still;
-            let drift =
-                (0..frames).map(|f| kept(f, &at).distance(way.frames[f][nodes[k]])).fold(0.0, f32::max);
+            let drift = (0..frames).map(|f| kept(f, &at).distance(way.frames[f][nodes[k]])).fold(0.0, f32::max);
             slides[k] = drift > LENGTHS * tolerance;
             for f in 0..frames {
-                let shift =
-                    if slides[k] { parent(f).inverse() * (way.frames[f][nodes[k]] - at[f]) } else { still };
+                let shift = if slides[k] { parent(f).inverse() * (way.frames[f][nodes[k]] - at[f]) } else { still };
                 at[f] += parent(f) * shift;
                 let turn = (parent(f).inverse() * global[f][k]).normalize();
                 let turn = match f.checked_sub(1).map(|b| own[b][k].turn) {
@@ -285,7 +284,9 @@ impl Chain {
                 let local = own(k);
                 all.push(match all.last() {
                     None => local,
-                    Some(p) => Placing { turn: (p.turn * local.turn).normalize(), shift: p.shift + p.turn * local.shift },
+                    Some(p) => {
+                        Placing { turn: (p.turn * local.turn).normalize(), shift: p.shift + p.turn * local.shift }
+                    }
                 });
             }
             all
@@ -517,7 +518,8 @@ fn fit(hair: &impl Hair, strand: usize, chains: &[Chain], firsts: &[usize], tole
         parts.push(length);
     }
     let each = hair.each();
-    let mut out = Fit { followed: Vec::with_capacity(n), shifts: Vec::with_capacity(n), error: 0.0, nearest: near[0].1 };
+    let mut out =
+        Fit { followed: Vec::with_capacity(n), shifts: Vec::with_capacity(n), error: 0.0, nearest: near[0].1 };
     let mut candidates: Vec<(usize, usize)> = vec![];
     let mut offsets: Vec<Vec3> = vec![];
     for k in 0..n {
@@ -592,7 +594,8 @@ fn fit(hair: &impl Hair, strand: usize, chains: &[Chain], firsts: &[usize], tole
 
 /// Weights that are whole 65535ths, greatest first.
 fn quantised(all: impl Iterator<Item = (u16, f64)>) -> Followed {
-    let mut all: Vec<(u16, u16)> = all.map(|(j, w)| (j, (w * 65535.0).round() as u16)).filter(|(_, w)| *w > 0).collect();
+    let mut all: Vec<(u16, u16)> =
+        all.map(|(j, w)| (j, (w * 65535.0).round() as u16)).filter(|(_, w)| *w > 0).collect();
     all.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
     let sum: i64 = all.iter().map(|(_, w)| i64::from(*w)).sum();
     if let Some(first) = all.first_mut() {

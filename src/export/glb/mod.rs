@@ -76,7 +76,7 @@ crate::params! {
         /// How a scene that moves is written: with its animation, or at the frame of its still pictures.
         animation: bool = true;
         /// At no frame is a vertex of the animation farther than this from its place; when left out 0.1, for strands that move
-        /// farther than 10 cm a hundredth of their way.
+        /// farther than 5 cm a fiftieth of their way.
         motion_tolerance: Option<f32>, unit("cm"), range(0.0, 10.0);
         /// How strands that move are written.
         motion: MotionForm = MotionForm::Auto;
@@ -136,9 +136,16 @@ pub fn glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Vec<u8>, 
             }
             Body::Hair(hair) => {
                 check_hair(part, hair)?;
-                file.strands(part, &hair.strands, &hair.material, (options.strands, options.tolerance, options.motion), task, |e| {
-                    e.guides = Some(hair.guides.count());
-                })?;
+                file.strands(
+                    part,
+                    &hair.strands,
+                    &hair.material,
+                    (options.strands, options.tolerance, options.motion),
+                    task,
+                    |e| {
+                        e.guides = Some(hair.guides.count());
+                    },
+                )?;
             }
         }
     }
@@ -157,7 +164,9 @@ pub fn guides_glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Ve
     for (part, hair) in scene.hair() {
         check_hair(part, hair)?;
         let named = Part { name: format!("{} guides", part.name), motion: None, ..part.clone() };
-        file.strands(&named, &hair.guides, &hair.material, (StrandForm::Lines, 0.0, MotionForm::Auto), task, |e| e.kind = "guides")?;
+        file.strands(&named, &hair.guides, &hair.material, (StrandForm::Lines, 0.0, MotionForm::Auto), task, |e| {
+            e.kind = "guides"
+        })?;
     }
     file.finish(options.max_bytes, task)
 }

@@ -15,8 +15,8 @@ use super::keys::{Placing, placings, reduce, share};
 use super::shapes::{Drawn, METRES};
 use super::skin::Tracked;
 use super::{File, Job, MotionForm, Place};
-use crate::geometry::{Bounds, Clip, Mesh, Strands};
 use crate::export::ExportError;
+use crate::geometry::{Bounds, Clip, Mesh, Strands};
 use crate::scene::{Body, Motion, Part, Scene, Timeline};
 use crate::task::{Cancelled, Task};
 
@@ -25,7 +25,7 @@ const SHAPES: f32 = 0.6;
 /// How far what moves may be from its place, unless it is said, cm.
 const USUAL: f32 = 0.1;
 /// The same for strands that move far: this part of their way.
-const OF_TRAVEL: f32 = 0.01;
+const OF_TRAVEL: f32 = 0.02;
 /// A displacement that is none, cm.
 const NOTHING: f32 = 1e-6;
 /// Sparse entries cost an index besides their values: worth it below this share.
@@ -208,9 +208,8 @@ impl File<'_> {
                     // Guides that do not move, though the strands do, show nothing.
                     let moves = !std::sync::Arc::ptr_eq(&hair.guides, &hair.strands)
                         && guides.frames.windows(2).any(|w| w[0].points != w[1].points);
-                    let led = moves.then(|| {
-                        (&*hair.guides, (0..frames).filter_map(|f| guides.at(f).map(|g| &**g)).collect())
-                    });
+                    let led = moves
+                        .then(|| (&*hair.guides, (0..frames).filter_map(|f| guides.at(f).map(|g| &**g)).collect()));
                     let tracked = Tracked::new(drawn, is_ribbons, (0..frames).filter_map(placed).collect(), led);
                     if let Some(chains) = Chains::new(&tracked, moments, tolerance, most, task)? {
                         self.skin(place, &chains, tracked.each(), rate);

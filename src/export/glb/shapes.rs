@@ -200,7 +200,10 @@ impl Drawn<'_> {
             moved(&rest, points.iter().copied(), &mut now);
             now.iter().flat_map(|f| self.edges(f)).collect()
         };
-        Way { frames: drawn.frames.iter().map(frame).collect(), rest: rest.iter().flat_map(|f| self.edges(f)).collect() }
+        Way {
+            frames: drawn.frames.iter().map(frame).collect(),
+            rest: rest.iter().flat_map(|f| self.edges(f)).collect(),
+        }
     }
 
     fn write_identity(&self, strand: usize, vertices: &mut Pen) {

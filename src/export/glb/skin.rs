@@ -69,7 +69,8 @@ impl Hair for Tracked<'_> {
 
     fn drawn(&self, strand: usize) -> Way {
         let nodes = self.nodes[strand].0;
-        let of = |points: &[Vec3], by: &Affine3A| nodes.iter().map(|&n| by.transform_point3(points[n as usize])).collect();
+        let of =
+            |points: &[Vec3], by: &Affine3A| nodes.iter().map(|&n| by.transform_point3(points[n as usize])).collect();
         Way {
             rest: of(&self.drawn.strands.points, &Affine3A::IDENTITY),
             frames: self.frames.iter().map(|(f, by)| of(&f.points, by)).collect(),

@@ -14,8 +14,8 @@ use super::lattice::failed;
 use super::overlay;
 use crate::deform::{self, Band, Bend, DeformError, Deformer, FitOptions, Lift, Measure, Taper, Target};
 use crate::garment::{self, DressOptions, FormOptions, Garment, ShirtOptions, SkirtOptions, Tape, TrousersOptions};
-use crate::geometry::{Mesh, Solid};
 use crate::geometry::slice::Side;
+use crate::geometry::{Mesh, Solid};
 use crate::head::Head;
 use crate::head::load::{self, Axis, FileBytes, LoadOptions, Unit};
 use crate::math::{Colour, Digest};
@@ -237,7 +237,8 @@ fn load_file(call: &Call) -> Result<Value> {
     let (fields, extras) = call.read_both::<LoadFields, ClothLook>()?;
     let options = LoadOptions { unit: fields.unit, up: fields.up, forward: fields.forward, groups: fields.groups };
     let mesh = read_mesh(call, &fields.file, &options, fields.at)?;
-    let stem = Path::new(&fields.file).file_stem().map_or_else(|| "garment".into(), |s| s.to_string_lossy().into_owned());
+    let stem =
+        Path::new(&fields.file).file_stem().map_or_else(|| "garment".into(), |s| s.to_string_lossy().into_owned());
     let garment = Arc::new(Garment::new(&stem, mesh));
     Ok(give(Cloth { garment, material: look(&extras), overlay: Arc::default(), source: call.source() }))
 }

@@ -101,10 +101,15 @@ pub fn noun() -> Noun {
             get: |h| h.get::<Piece>().map_or(Value::Nil, |p| Value::Number(p.mesh.triangles.len() as f64)),
         },
     ];
-    Noun::of::<Piece>("A cap, a bun, a ring or a loaded mesh of stylised hair.", super::deform::piece_methods(), getters, |h| {
-        h.get::<Piece>()
-            .map_or_else(String::new, |p| format!("{} of {} triangles", p.kind.text(), p.mesh.triangles.len()))
-    })
+    Noun::of::<Piece>(
+        "A cap, a bun, a ring or a loaded mesh of stylised hair.",
+        super::deform::piece_methods(),
+        getters,
+        |h| {
+            h.get::<Piece>()
+                .map_or_else(String::new, |p| format!("{} of {} triangles", p.kind.text(), p.mesh.triangles.len()))
+        },
+    )
 }
 
 /// The head that a call names or means.
