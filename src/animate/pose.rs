@@ -13,6 +13,8 @@
 //! is learnt from how the slope changes (the structured secant update of Dennis, Gay, Welsch 1981) and kept from frame to
 //! frame: it changes slowly, and with it a frame needs half the iterations.
 
+#![allow(clippy::needless_range_loop, reason = "several lists are gone through in step")]
+
 use glam::{DVec3, Vec3};
 use multiversion::multiversion;
 

@@ -4,8 +4,11 @@
 //! each is turned by the least turn that takes its segment from the one before it, so a segment keeps its length and only
 //! turns are keyed, but where lengths change. A node of a strand follows at most four joints of the chains whose roots and
 //! tips move most like its own, by the weights that fit all frames best: least squares over weights that are not negative
-//! and sum to one (Lawson, Hanson 1974). Strands that come out farther off than the tolerance get chains themselves, until
-//! none does.
+//! and sum to one (Lawson, Hanson 1974). Then its place at rest is shifted a little, to where all frames fit best (Le, Deng
+//! 2012): a joint turns what is around it, while hair beside a guide is mostly shifted. Strands that come out farther off
+//! than the tolerance get chains themselves, until none does.
+
+#![allow(clippy::needless_range_loop, reason = "several lists are gone through in step")]
 
 use std::collections::BTreeSet;
 
@@ -17,6 +20,7 @@ use crate::task::{Cancelled, Task};
 
 /// Joints that a vertex follows at most: what programs read.
 pub const FOLLOWED: usize = 4;
+
 /// What chains may take.
 #[derive(Clone, Copy, Debug)]
 pub struct Most {

@@ -165,7 +165,7 @@ pub fn guides_glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Ve
         check_hair(part, hair)?;
         let named = Part { name: format!("{} guides", part.name), motion: None, ..part.clone() };
         file.strands(&named, &hair.guides, &hair.material, (StrandForm::Lines, 0.0, MotionForm::Auto), task, |e| {
-            e.kind = "guides"
+            e.kind = "guides";
         })?;
     }
     file.finish(options.max_bytes, task)

@@ -193,7 +193,7 @@ impl File<'_> {
                 let sampled = match form {
                     MotionForm::Joints => None,
                     MotionForm::Auto | MotionForm::Shapes => {
-                        Some(Sampled::new(&rest, frames, &at, SHAPES * tolerance, task)?)
+                        Some(Sampled::new(&rest, frames, at, SHAPES * tolerance, task)?)
                     }
                 };
                 let most = match (form, &sampled) {
