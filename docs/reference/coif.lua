@@ -610,6 +610,23 @@ function coif.bun(fields) end
 ---@return coif.Piece
 function coif.ring(fields) end
 
+---What `coif.mesh` takes.
+---@class (exact) coif.mesh.fields
+---@field file string # The file, beside the script or below its folder.
+---@field unit? "mm"|"cm"|"dm"|"m"|"in"|"ft" # What one unit of the file is; metres for glTF, centimetres for OBJ when left out.
+---@field up? "x"|"y"|"z"|"-x"|"-y"|"-z" # The axis of the file that points up; "y" when left out.
+---@field forward? "x"|"y"|"z"|"-x"|"-y"|"-z" # The axis of the file that points to the front; "z", or "-y" when z is up.
+---@field groups? string[] # Only these groups, objects or materials; everything when left out.
+---@field at? coif.Point # How far it is moved. [cm; default { 0, 0, 0 }]
+---@field head? coif.Head # The head it belongs to; needed only when the script made several.
+---@field material? coif.TuftMaterial|coif.material.tuft.fields|coif.Colour # Its look: `coif.material.tuft { ... }`, its fields, or a colour as "#6b432b".
+
+---Stylised hair from a file: OBJ, glTF or GLB. It stays where it is in the file, but for `at`. Several files of
+---one topology are the states of a lock that moves: `coif.animate { states = { rest, bent }, ... }`.
+---@param fields coif.mesh.fields
+---@return coif.Piece
+function coif.mesh(fields) end
+
 ---What `coif.path` takes.
 ---@class (exact) coif.path.fields
 ---@field points? (coif.Point|coif.Head.point.fields)[] # Places that the handle passes, in head space. [cm]
@@ -633,10 +650,10 @@ function coif.path(fields) end
 ---@field path coif.Path # The way it goes.
 ---@field lock? number # Only on the lock of this number; on all of them when left out. [whole; 1 to 1000000]
 
----Lets the handles trail behind the head's motion: `{}`, or how.
+---Lets the handles trail behind the head's motion, as hair does: `{}`, or how.
 ---@class (exact) coif.animate.lag
----@field frequency? number # How fast it swings: slow for long and heavy locks. [1/s; 0.1 to 20; default 1.5]
----@field damping? number # How soon the swing dies: 0 never, 1 without swinging over. [0.02 to 4; default 0.35]
+---@field hold? number # How well the hair keeps its shape, as in `strands:simulate`: more is stiffer and swings faster. [cm; 0 to 1000; default 8]
+---@field drag? number # How strongly the air brakes it: more dies sooner. [1/s; 0 to 1000; default 3]
 ---@field amount? number # How much of the lag is shown. [0 to 2; default 1]
 
 ---What `coif.animate` takes.
@@ -649,7 +666,7 @@ function coif.path(fields) end
 ---@field loop? boolean # The first frame follows the last; paths must then end where they began, by `closed` or `back`. [default false]
 ---@field stagger? number # Each lock begins so much later than the one before it. [s; -100 to 100; default 0]
 ---@field motion? coif.Motion # What the head does meanwhile: the locks are carried along.
----@field lag? coif.animate.lag # Lets the handles trail behind the head's motion: `{}`, or how.
+---@field lag? coif.animate.lag # Lets the handles trail behind the head's motion, as hair does: `{}`, or how.
 
 ---Locks that move: posed states, and paths for their handles. The whole surface follows in the way the states
 ---show.
@@ -1580,9 +1597,9 @@ local TuftMaterial = {}
 ---@field frames number # How many frames it takes.
 local Path = {}
 
----A cap, a bun or a ring of stylised hair.
+---A cap, a bun, a ring or a loaded mesh of stylised hair.
 ---@class coif.Piece
----@field kind string # `cap`, `bun` or `ring`.
+---@field kind string # `cap`, `bun`, `ring` or `mesh`.
 ---@field triangles number # How many triangles it has.
 local Piece = {}
 

@@ -57,7 +57,7 @@ local turn = head:motion {
 local moving = coif.animate {
   states = { tail(0, 0), tail(13, 1), tail(-13, 1), tail(0, 9) },
   motion = turn, loop = true,
-  lag    = { frequency = 1.1, damping = 0.4, amount = 0.6 * p.lag },
+  lag    = { hold = 8, drag = 3, amount = p.lag },
 }
 
 local function fringe(azimuth, lean, length, width)

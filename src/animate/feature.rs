@@ -15,8 +15,8 @@ use multiversion::multiversion;
 
 use super::cholesky::LANES;
 
-/// Triangles worked on in step.
-pub(super) const TILE: usize = 8;
+/// Triangles worked on in step: so many that the compiler makes vectors of its loops rather than unrolling them.
+pub(super) const TILE: usize = 16;
 /// The most states besides the rest.
 pub const MOST_STATES: usize = 10;
 /// States and the blend itself.
@@ -242,7 +242,7 @@ fn blend_tile(tile: &Tile, changes: &[[Lane; 9]], weights: &[f64], fields: &mut 
         }
     }
     // R v = cos v + a (turn x v) + b turn (turn . v); the left derivative is a dv + b (turn x dv) + c turn (turn . dv).
-    let (mut cos, mut a, mut b, mut c) = ([0.0; TILE], [0.0; TILE], [0.0; TILE], [0.0; TILE]);
+    let [mut cos, mut a, mut b, mut c] = [[0.0; TILE]; 4];
     for l in 0..TILE {
         let s = turn[0][l] * turn[0][l] + turn[1][l] * turn[1][l] + turn[2][l] * turn[2][l];
         let (al, bl, cl, cosl) = rodrigues(s);

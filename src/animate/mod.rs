@@ -3,8 +3,8 @@
 //!
 //! A [`Rig`] is a mesh in several states with its held vertices and handles: the features of the states and the factored
 //! system, made once. A [`Poser`] finds one frame after the other; [`animate`] goes along whole paths, and [`animate_all`]
-//! does so for many locks at once. [`PathOptions`] says where a handle is in every frame; [`lagging`] and [`carried`] put
-//! the lock on a head that moves. `docs/methods/animate.md` has the method, its sources and every departure.
+//! does so for many locks at once. [`PathOptions`] says where a handle is in every frame; [`carried`] puts the lock on a head
+//! that moves. `docs/methods/animate.md` has the method, its sources and every departure.
 
 mod cholesky;
 mod clip;
@@ -24,7 +24,7 @@ mod tests;
 pub use clip::{Animation, animate, animate_all};
 pub use error::AnimateError;
 pub use feature::MOST_STATES;
-pub use follow::{Lag, carried, lagging};
+pub use follow::carried;
 pub use path::{PathCurve, PathOptions};
 pub use pose::{Posed, Poser, TOLERANCE};
 pub use rig::Rig;

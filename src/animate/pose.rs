@@ -9,7 +9,11 @@
 //! H_ij = <M_i, M_j> - (G^T M_i) A^-1 (G^T M_j)      g_i = <M_i, M> - (G^T M_i) . x
 //! ```
 //!
-//! damped (Levenberg, Marquardt) only after a step that went uphill.
+//! damped (Levenberg, Marquardt) only after a step that went uphill. What Gauss-Newton leaves out of the second derivatives
+//! is learnt from how the slope changes (the structured secant update of Dennis, Gay, Welsch 1981) and kept from frame to
+//! frame: it changes slowly, and with it a frame needs half the iterations.
+
+#![allow(clippy::needless_range_loop, reason = "several lists are gone through in step")]
 
 use glam::{DVec3, Vec3};
 use multiversion::multiversion;
@@ -30,6 +34,8 @@ const BLENDING: f64 = 0.01;
 const SUSPECT: f64 = 0.15;
 /// Keeps the small system solvable where weights make no difference: states that are alike.
 const FLOOR: f64 = 1e-9;
+/// A step of the weights shorter than this teaches nothing: its slopes differ by rounding.
+const SHORTEST: f64 = 1e-7;
 
 /// How a frame was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +65,8 @@ pub struct Poser<'a> {
     shift: Vec<[f64; 3]>,
     /// Places by row, from the centre.
     x: Vec<[f64; 3]>,
+    /// What the Gauss-Newton matrix leaves out, as far as it is known.
+    learnt: Square,
     pub(super) most_iterations: u32,
     /// [`BLENDING`]; tests of the plain energy have 0.
     pub(super) blending: f64,
@@ -73,11 +81,14 @@ struct Descent {
     converged: bool,
 }
 
+/// A small symmetric matrix.
+type Square = [[f64; FIELDS]; FIELDS];
+
 /// The small system at some weights.
 struct Small {
     energy: f64,
     slope: [f64; FIELDS],
-    hessian: [[f64; FIELDS]; FIELDS],
+    hessian: Square,
 }
 
 impl<'a> Poser<'a> {
@@ -90,6 +101,7 @@ impl<'a> Poser<'a> {
             blend,
             shift: vec![[0.0; 3]; rig.unknowns()],
             x: rig.places.iter().map(|p| p.to_array()).collect(),
+            learnt: [[0.0; FIELDS]; FIELDS],
             most_iterations: MOST_ITERATIONS,
             blending: BLENDING,
         }
@@ -98,6 +110,7 @@ impl<'a> Poser<'a> {
     /// Forgets the frames so far: the next one is looked for from every state.
     pub fn forget(&mut self) {
         self.weights = [None, None];
+        self.learnt = [[0.0; FIELDS]; FIELDS];
     }
 
     /// Poses the mesh with its handles at `targets`, one per handle, and writes every vertex. Held vertices and handles
@@ -229,12 +242,18 @@ impl<'a> Poser<'a> {
                     damping = if damping == 0.0 { 1e-2 } else { 8.0 * damping };
                     before
                 }
-                _ => {
+                before => {
                     damping = if damping > 1e-3 { damping / 8.0 } else { 0.0 };
+                    if let Some((from, held)) = before {
+                        self.learn(&from, &held, &weights, &small);
+                    }
                     (weights, small)
                 }
             };
-            let delta = self.small_step(&small, damping);
+            if uphill {
+                self.learnt = [[0.0; FIELDS]; FIELDS];
+            }
+            let delta = self.step(&small, damping);
             if uphill {
                 // The fields are not those of `from`: only the weights can tell whether it still goes anywhere.
                 let size = delta.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
@@ -244,7 +263,7 @@ impl<'a> Poser<'a> {
                 }
             } else {
                 // A step that is short for its damping only says nothing.
-                let full = if damping > 0.0 { self.small_step(&small, 0.0) } else { delta.clone() };
+                let full = if damping > 0.0 { self.step(&small, 0.0) } else { delta.clone() };
                 step = self.movement(&full);
                 if step <= limit {
                     self.advance(&full);
@@ -329,59 +348,84 @@ impl<'a> Poser<'a> {
     fn product(&self, e: usize, f: usize) -> f64 {
         let free = self.rig.unknowns();
         let (a, b) = (3 * (e % PER_BLOCK), 3 * (f % PER_BLOCK));
-        let rows = self.blend.right[e / PER_BLOCK][..free].iter().zip(&self.solution[f / PER_BLOCK]);
-        rows.map(|(r, s)| r[a] * s[b] + r[a + 1] * s[b + 1] + r[a + 2] * s[b + 2]).sum()
+        product(&self.blend.right[e / PER_BLOCK][..free], &self.solution[f / PER_BLOCK][..free], a, b)
     }
 
-    /// The step of the small system: `(H + damping) d = -g` by Cholesky.
-    fn small_step(&self, small: &Small, damping: f64) -> Vec<f64> {
+    /// Learns from how the slope changed between two weights: afterwards the matrix of the second, with what is learnt, takes
+    /// their difference to that of the slopes.
+    fn learn(&mut self, from: &[f64], before: &Small, to: &[f64], now: &Small) {
         let n = self.rig.states;
-        let greatest = (0..n).map(|i| small.hessian[i][i]).fold(0.0, f64::max);
-        let mut l = small.hessian;
-        let mut d: Vec<f64> = small.slope[..n].iter().map(|g| -g).collect();
-        for (i, row) in l.iter_mut().enumerate().take(n) {
-            row[i] += damping * row[i].max(0.0) + (FLOOR + 1e-3 * damping) * greatest + f64::MIN_POSITIVE;
-        }
+        let mut s = [0.0; FIELDS];
+        let mut y = [0.0; FIELDS];
         for i in 0..n {
-            for j in 0..=i {
-                let sum: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
-                let rest = l[i][j] - sum;
-                // Rounding may leave nothing of a direction that makes no difference.
-                l[i][j] =
-                    if i == j { rest.max(FLOOR * FLOOR * greatest + f64::MIN_POSITIVE).sqrt() } else { rest / l[j][j] };
+            s[i] = to[i] - from[i];
+            y[i] = now.slope[i] - before.slope[i];
+        }
+        let times = |m: &Square, i: usize| (0..n).map(|j| m[i][j] * s[j]).sum::<f64>();
+        let dot = |a: &[f64; FIELDS], b: &[f64; FIELDS]| (0..n).map(|i| a[i] * b[i]).sum::<f64>();
+        let mut left = [0.0; FIELDS];
+        for (i, left) in left.iter_mut().enumerate().take(n) {
+            *left = y[i] - times(&now.hessian, i) - times(&self.learnt, i);
+        }
+        let curvature: f64 = (0..n).map(|i| s[i] * times(&now.hessian, i)).sum();
+        let along = dot(&y, &s);
+        // Of steps too short, or against what they should show, nothing is learnt.
+        if along.is_nan() || along <= 0.1 * curvature || dot(&s, &s) < SHORTEST * SHORTEST {
+            return;
+        }
+        let rest = dot(&left, &s) / (along * along);
+        for i in 0..n {
+            for j in 0..n {
+                self.learnt[i][j] += (left[i] * y[j] + y[i] * left[j]) / along - rest * y[i] * y[j];
             }
         }
+    }
+
+    /// The step of the small system with what is learnt, as long as that leaves it well above zero; else it is forgotten.
+    fn step(&mut self, small: &Small, damping: f64) -> Vec<f64> {
+        let n = self.rig.states;
+        let mut whole = small.hessian;
         for i in 0..n {
-            let sum: f64 = (0..i).map(|k| l[i][k] * d[k]).sum();
-            d[i] = (d[i] - sum) / l[i][i];
+            for j in 0..n {
+                whole[i][j] += self.learnt[i][j];
+            }
         }
-        for i in (0..n).rev() {
-            let sum: f64 = (i + 1..n).map(|k| l[k][i] * d[k]).sum();
-            d[i] = (d[i] - sum) / l[i][i];
+        match solved(&whole, small, n, damping, 0.1) {
+            Some(delta) => delta,
+            None => {
+                self.learnt = [[0.0; FIELDS]; FIELDS];
+                solved(&small.hessian, small, n, damping, 0.0).unwrap_or_default()
+            }
         }
-        d
     }
 
     /// Movement of a row when the weights change.
-    fn moved(&self, row: usize, delta: &[f64]) -> DVec3 {
-        let mut sum = DVec3::ZERO;
+    fn moved(&self, row: usize, delta: &[f64]) -> [f64; 3] {
+        let mut sum = [0.0; 3];
         for (e, d) in delta.iter().enumerate() {
             let at = 3 * ((e + 1) % PER_BLOCK);
             let s = &self.solution[(e + 1) / PER_BLOCK][row];
-            sum += DVec3::new(s[at], s[at + 1], s[at + 2]) * *d;
+            for c in 0..3 {
+                sum[c] += s[at + c] * d;
+            }
         }
         sum
     }
 
     /// The greatest movement when the weights change, cm.
     fn movement(&self, delta: &[f64]) -> f64 {
-        (0..self.rig.unknowns()).map(|r| self.moved(r, delta).length_squared()).fold(0.0, f64::max).sqrt()
+        let mut most = 0.0_f64;
+        for row in 0..self.rig.unknowns() {
+            let [x, y, z] = self.moved(row, delta);
+            most = most.max(x * x + y * y + z * z);
+        }
+        most.sqrt()
     }
 
     /// Moves the places along with the weights.
     fn advance(&mut self, delta: &[f64]) {
         for r in 0..self.rig.unknowns() {
-            let by = self.moved(r, delta).to_array();
+            let by = self.moved(r, delta);
             (0..3).for_each(|c| self.x[r][c] += by[c]);
         }
     }
@@ -402,13 +446,60 @@ impl<'a> Poser<'a> {
     }
 }
 
+/// The solution of `(matrix + damping) d = -slope` by Cholesky; none when a pivot is below that part of the Gauss-Newton
+/// matrix's diagonal.
+fn solved(matrix: &Square, small: &Small, n: usize, damping: f64, least: f64) -> Option<Vec<f64>> {
+    let greatest = (0..n).map(|i| small.hessian[i][i]).fold(0.0, f64::max);
+    let mut l = *matrix;
+    let mut d: Vec<f64> = small.slope[..n].iter().map(|g| -g).collect();
+    for (i, row) in l.iter_mut().enumerate().take(n) {
+        row[i] += damping * small.hessian[i][i].max(0.0) + (FLOOR + 1e-3 * damping) * greatest + f64::MIN_POSITIVE;
+    }
+    for i in 0..n {
+        for j in 0..=i {
+            let sum: f64 = (0..j).map(|k| l[i][k] * l[j][k]).sum();
+            let rest = l[i][j] - sum;
+            if i == j && rest < least * small.hessian[i][i] {
+                return None;
+            }
+            // Rounding may leave nothing of a direction that makes no difference.
+            l[i][j] =
+                if i == j { rest.max(FLOOR * FLOOR * greatest + f64::MIN_POSITIVE).sqrt() } else { rest / l[j][j] };
+        }
+    }
+    for i in 0..n {
+        let sum: f64 = (0..i).map(|k| l[i][k] * d[k]).sum();
+        d[i] = (d[i] - sum) / l[i][i];
+    }
+    for i in (0..n).rev() {
+        let sum: f64 = (i + 1..n).map(|k| l[k][i] * d[k]).sum();
+        d[i] = (d[i] - sum) / l[i][i];
+    }
+    Some(d)
+}
+
 #[multiversion(targets("x86_64+avx2", "x86_64+avx"))]
 fn against_places(right: &[[f64; LANES]], x: &[[f64; 3]]) -> [f64; LANES] {
     let mut sums = [0.0; LANES];
-    for (r, x) in right.iter().zip(x) {
+    let n = right.len().min(x.len());
+    let (right, x) = (&right[..n], &x[..n]);
+    for i in 0..n {
         for k in 0..LANES {
-            sums[k] += r[k] * x[k % 3];
+            sums[k] += right[i][k] * x[i][k % 3];
         }
     }
     sums
+}
+
+/// The sum over rows of three right-hand sides, from `a` on, times three of the solution, from `b` on. A plain loop: it is
+/// compiled as one whichever way the crate is cut.
+fn product(right: &[[f64; LANES]], solution: &[[f64; LANES]], a: usize, b: usize) -> f64 {
+    let n = right.len().min(solution.len());
+    let (right, solution) = (&right[..n], &solution[..n]);
+    let mut sum = 0.0;
+    for i in 0..n {
+        let (r, s) = (&right[i][a..a + 3], &solution[i][b..b + 3]);
+        sum += r[0] * s[0] + r[1] * s[1] + r[2] * s[2];
+    }
+    sum
 }

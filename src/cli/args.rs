@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use super::proof::{DiffArguments, SheetArguments, TestArguments};
 use super::show::Show;
-use crate::export::{Format, StrandForm};
+use crate::export::{Format, MotionForm, StrandForm};
 use crate::head::load::Unit;
 use crate::scene::{Background, View};
 use crate::script::{Limits, limits};
@@ -140,9 +140,13 @@ pub struct RunArguments {
     /// What strands become in the GLB [ribbons, lines, none]
     #[arg(long, value_name = "FORM", default_value = "ribbons", value_parser = form)]
     pub strands: StrandForm,
-    /// Farthest that a strand in the GLB may lie from its true course
-    #[arg(long, value_name = "CM", default_value_t = 0.1, value_parser = tolerance)]
-    pub tolerance: f32,
+    /// Farthest that a strand in the GLB may lie from its true course, and what moves from its place at any frame; 0.1 when
+    /// left out, in motion a fiftieth of their way for strands that move farther than 5 cm
+    #[arg(long, value_name = "CM", value_parser = tolerance)]
+    pub tolerance: Option<f32>,
+    /// How strands that move are written in the GLB [auto, shapes, joints]
+    #[arg(long, value_name = "FORM", default_value = "auto", value_parser = motion)]
+    pub motion: MotionForm,
     /// Bring all stylised hair (tufts, caps, buns, rings) within this many triangles, less first where it shows least
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub triangles: Option<u32>,
@@ -248,6 +252,10 @@ fn unit(text: &str) -> Result<Unit, String> {
 
 fn form(text: &str) -> Result<StrandForm, String> {
     choice(text, StrandForm::TEXTS, StrandForm::parse)
+}
+
+fn motion(text: &str) -> Result<MotionForm, String> {
+    choice(text, MotionForm::TEXTS, MotionForm::parse)
 }
 
 fn format(text: &str) -> Result<Format, String> {

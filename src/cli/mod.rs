@@ -79,6 +79,7 @@ fn run_options(arguments: &RunArguments, samples: u32) -> RunOptions {
         },
         strands: arguments.strands,
         tolerance: arguments.tolerance,
+        motion: arguments.motion,
         guides: arguments.guides && arguments.strands != StrandForm::None,
         formats: formats(&arguments.format),
         films: Films { moving: !arguments.still, turntable: arguments.turntable },

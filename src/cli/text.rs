@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
+use crate::export::PartMotion;
 use crate::render::sheet::grouped;
 use crate::script::{Origin, Outcome};
 use crate::workbench::{Report, Stage, Written};
@@ -54,6 +55,9 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
             None => writeln!(out, "{:>8}  {before} triangles are within it", "budget"),
         };
     }
+    for motion in &report.motions {
+        let _ = writeln!(out, "{:>8}  {}: {}", "moves", motion.part, moved(motion));
+    }
     let stage = |s: &Stage| match s.origin {
         Some(Origin::Hit) => format!("{} {} (hit)", s.what, milliseconds(s.time)),
         Some(Origin::Computed) | None => format!("{} {}", s.what, milliseconds(s.time)),
@@ -72,6 +76,26 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
         let _ = writeln!(out, "{:>8}  {} ({})", "wrote", file.path.display(), size(file.bytes));
     }
     out
+}
+
+/// How a part of the GLB moves, how near and at what cost.
+fn moved(motion: &PartMotion) -> String {
+    let s = |n: usize| if n == 1 { "" } else { "s" };
+    let what = match motion.form.as_str() {
+        "joints" => {
+            let (joints, chains) = (grouped(motion.joints), grouped(motion.chains));
+            format!("{joints} joints in {chains} chain{}", s(motion.chains))
+        }
+        "shapes" => format!("{} shape{}", motion.shapes, s(motion.shapes)),
+        _ => "as a whole".to_owned(),
+    };
+    format!(
+        "{what}, {} frames with {} keys at most, within {:.2} cm, {}",
+        motion.frames,
+        motion.keys,
+        motion.error_cm,
+        size(motion.bytes)
+    )
 }
 
 /// What `coif new` made, and how to go on.
@@ -105,6 +129,10 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "budget": report.budget.map(|b| json!({
             "before": b.before, "after": b.after, "lowered": b.lowered, "tufts": b.tufts, "pieces": b.pieces, "tolerance_cm": b.tolerance,
         })),
+        "motions": report.motions.iter().map(|m| json!({
+            "part": m.part, "form": m.form, "frames": m.frames, "shapes": m.shapes, "joints": m.joints, "chains": m.chains,
+            "keys": m.keys, "bytes": m.bytes, "error_cm": m.error_cm,
+        })).collect::<Vec<_>>(),
         "warnings": report.outcome.diagnostics.len(),
     });
     format!("{object}\n")

@@ -48,7 +48,7 @@ pub fn cyhair(scene: &Scene, options: &CyHairOptions, task: &Task) -> Result<Vec
     let mut parts: Vec<(&Strands, &HairMaterial, Vec<Block>)> = Vec::new();
     for (part, hair) in scene.hair() {
         check_hair(part, hair)?;
-        let blocks = reduce(&hair.strands, options.tolerance, task)?;
+        let blocks = reduce(&hair.strands, &[], options.tolerance, task)?;
         let limit = usize::from(u16::MAX);
         for (strand, nodes) in blocks.iter().flat_map(Block::strands) {
             if nodes.len() - 1 > limit {

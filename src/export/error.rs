@@ -35,6 +35,16 @@ pub enum ExportError {
         /// What is wrong with it.
         what: &'static str,
     },
+    /// Strands that move want more joints than a file can number.
+    #[error(
+        "part `{part}`: its motion cannot be kept within {tolerance} cm by joints: allow more, or write it as shapes"
+    )]
+    Joints {
+        /// Name of the part.
+        part: String,
+        /// What was asked for, cm.
+        tolerance: f32,
+    },
     /// Strands are broken.
     #[error("part `{part}`: {error}")]
     Strands {

@@ -17,7 +17,7 @@ pub mod usda;
 
 pub use cyhair::{CyHairOptions, cyhair};
 pub use error::ExportError;
-pub use glb::{GlbOptions, StrandForm, glb, guides_glb};
+pub use glb::{GlbOptions, MotionForm, PartMotion, StrandForm, glb, guides_glb, motions};
 pub use usda::{UsdaOptions, usda};
 
 use std::borrow::Cow;
@@ -97,6 +97,14 @@ fn check_motion(part: &Part) -> Result<(), ExportError> {
     match found {
         Some((frame, what)) => bad(frame, what),
         None => Ok(()),
+    }
+}
+
+/// The frames of strands that move; none when they do not.
+fn frames_of(part: &Part) -> Vec<&Strands> {
+    match &part.motion {
+        Some(Motion::Strands { strands, .. }) => strands.frames.iter().map(|f| &**f).collect(),
+        Some(Motion::Rigid(_) | Motion::Surface(_)) | None => vec![],
     }
 }
 

@@ -32,8 +32,14 @@ impl Block {
     }
 }
 
-/// Reduces every strand so that no point of it is farther than `tolerance` (cm) from the reduced polyline.
-pub(super) fn reduce(strands: &Strands, tolerance: f32, task: &Task) -> Result<Vec<Block>, Cancelled> {
+/// Reduces every strand so that no point of it is farther than `tolerance` (cm) from the reduced polyline, at rest and at
+/// all `frames` of the same topology: what is straight at rest may bend.
+pub(super) fn reduce(
+    strands: &Strands,
+    frames: &[&Strands],
+    tolerance: f32,
+    task: &Task,
+) -> Result<Vec<Block>, Cancelled> {
     let count = strands.count();
     (0..count.div_ceil(BLOCK))
         .into_par_iter()
@@ -43,7 +49,8 @@ pub(super) fn reduce(strands: &Strands, tolerance: f32, task: &Task) -> Result<V
             let mut block = Block { first: range.start, nodes: Vec::new(), ends: Vec::with_capacity(range.len()) };
             let mut scratch = Scratch::default();
             for i in range {
-                keep(strands.strand(i), tolerance, strands.offsets[i], &mut scratch, &mut block.nodes);
+                let poses = || std::iter::once(strands).chain(frames.iter().copied()).map(|s| s.strand(i));
+                keep(poses, tolerance, strands.offsets[i], &mut scratch, &mut block.nodes);
                 block.ends.push(block.nodes.len() as u32);
             }
             Ok(block)
@@ -61,23 +68,32 @@ struct Scratch {
 /// `tolerance` of the chord, else it is split at the farthest node. The distance is to the chord as a *segment*: where
 /// a strand turns back, the distance to the line would be too small. Segments are convex, so what holds for the nodes
 /// of a stretch holds for all its points.
-fn keep(points: &[Vec3], tolerance: f32, offset: u32, scratch: &mut Scratch, out: &mut Vec<u32>) {
+fn keep<'a, I: Iterator<Item = &'a [Vec3]>>(
+    poses: impl Fn() -> I,
+    tolerance: f32,
+    offset: u32,
+    scratch: &mut Scratch,
+    out: &mut Vec<u32>,
+) {
     let limit = tolerance * tolerance;
+    let count = poses().next().map_or(2, <[Vec3]>::len);
     let mut from = 0;
     out.push(offset);
     scratch.stack.clear();
-    scratch.stack.push(points.len() - 1);
+    scratch.stack.push(count - 1);
     while let Some(&to) = scratch.stack.last() {
-        let (a, chord) = (points[from], points[to] - points[from]);
-        let squared = chord.length_squared();
-        let inverse = if squared > 0.0 { 1.0 / squared } else { 0.0 };
         let (mut worst, mut split) = (limit, None);
-        for (k, &p) in points.iter().enumerate().take(to).skip(from + 1) {
-            let offset = p - a;
-            let t = (offset.dot(chord) * inverse).clamp(0.0, 1.0);
-            let distance = (offset - chord * t).length_squared();
-            if distance > worst {
-                (worst, split) = (distance, Some(k));
+        for points in poses() {
+            let (a, chord) = (points[from], points[to] - points[from]);
+            let squared = chord.length_squared();
+            let inverse = if squared > 0.0 { 1.0 / squared } else { 0.0 };
+            for (k, &p) in points.iter().enumerate().take(to).skip(from + 1) {
+                let offset = p - a;
+                let t = (offset.dot(chord) * inverse).clamp(0.0, 1.0);
+                let distance = (offset - chord * t).length_squared();
+                if distance > worst {
+                    (worst, split) = (distance, Some(k));
+                }
             }
         }
         match split {
@@ -99,7 +115,7 @@ mod tests {
 
     fn kept(points: &[Vec3], tolerance: f32) -> Vec<u32> {
         let mut out = Vec::new();
-        keep(points, tolerance, 0, &mut Scratch::default(), &mut out);
+        keep(|| std::iter::once(points), tolerance, 0, &mut Scratch::default(), &mut out);
         out
     }
 
@@ -163,6 +179,15 @@ mod tests {
     }
 
     #[test]
+    fn what_bends_in_a_frame_keeps_its_nodes() {
+        let straight: Vec<Vec3> = (0..9).map(|i| Vec3::Y * i as f32).collect();
+        let bent: Vec<Vec3> = straight.iter().map(|p| *p + Vec3::X * (4.0 - p.y).abs()).collect();
+        let mut out = Vec::new();
+        keep(|| [&straight[..], &bent[..]].into_iter(), 0.1, 0, &mut Scratch::default(), &mut out);
+        assert_eq!(out, [0, 4, 8]);
+    }
+
+    #[test]
     fn turning_back_is_kept() {
         // Measured against the line instead of the segment, the far point would vanish.
         let hook = [Vec3::ZERO, Vec3::X * 3.0, Vec3::X];
@@ -185,7 +210,7 @@ mod tests {
             };
             strands.push(root, 0, (0..2 + i % 5).map(|k| Vec3::new((k * k) as f32, k as f32, i as f32)));
         }
-        let blocks = reduce(&strands, 0.0, &Task::new()).unwrap();
+        let blocks = reduce(&strands, &[], 0.0, &Task::new()).unwrap();
         let all: Vec<(usize, Vec<u32>)> =
             blocks.iter().flat_map(|b| b.strands().map(|(i, n)| (i, n.to_vec()))).collect();
         assert_eq!(all.len(), 600);
@@ -196,6 +221,6 @@ mod tests {
         }
         let task = Task::new();
         task.cancel();
-        assert_eq!(reduce(&strands, 0.0, &task).unwrap_err(), Cancelled);
+        assert_eq!(reduce(&strands, &[], 0.0, &task).unwrap_err(), Cancelled);
     }
 }

@@ -17,7 +17,7 @@ use crate::task::{Cancelled, Task};
 
 use self::text::{Names, decimal, quoted, tuple};
 use super::reduce::{Block, reduce};
-use super::{ExportError, appearance, check_hair, check_motion, check_tolerance, with_normals};
+use super::{ExportError, appearance, check_hair, check_motion, check_tolerance, frames_of, with_normals};
 
 crate::params! {
     /// How a scene is written as USD.
@@ -87,10 +87,10 @@ pub fn usda(scene: &Scene, options: &UsdaOptions, task: &Task) -> Result<Vec<u8>
             }
             Body::Hair(hair) => {
                 check_hair(part, hair)?;
-                let blocks = reduce(&hair.strands, options.tolerance, task)?;
+                let blocks = reduce(&hair.strands, &frames_of(part), options.tolerance, task)?;
                 out.curves(&name, part, (&hair.strands, &blocks, &hair.material), false, &binding, task)?;
                 if options.guides {
-                    let blocks = reduce(&hair.guides, 0.0, task)?;
+                    let blocks = reduce(&hair.guides, &[], 0.0, task)?;
                     let name = names.take(&format!("{name}_guides"));
                     out.curves(&name, part, (&hair.guides, &blocks, &hair.material), true, &binding, task)?;
                 }

@@ -19,6 +19,8 @@ crate::choices! {
         Bun = "bun",
         /// A band around a lock.
         Ring = "ring",
+        /// Hair from a file.
+        Mesh = "mesh",
     }
 }
 
@@ -84,7 +86,7 @@ impl Locks {
                 let off = within - Vec2::splat(0.5);
                 Vec2::new(crate::math::trig::atan2(off.y, off.x) / std::f32::consts::TAU + 0.5, 2.0 * off.length())
             }
-            LockKind::Tufts | LockKind::Bun | LockKind::Ring => within,
+            LockKind::Tufts | LockKind::Bun | LockKind::Ring | LockKind::Mesh => within,
         }
     }
 }

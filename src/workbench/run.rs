@@ -10,7 +10,8 @@ use super::keep::{Shows, kept, scene_key};
 use super::output::{Output, Unwritten, WriteError, Written, write_until};
 use super::{PartFigures, figures};
 use crate::export::{
-    CyHairOptions, ExportError, Format, GlbOptions, StrandForm, UsdaOptions, cyhair, glb, guides_glb, usda,
+    CyHairOptions, ExportError, Format, GlbOptions, MotionForm, PartMotion, StrandForm, UsdaOptions, cyhair, glb,
+    guides_glb, motions, usda,
 };
 use crate::math::Digest;
 use crate::render::{PngError, RenderError, SheetOptions, Speed, png, sheet};
@@ -36,8 +37,11 @@ pub struct RunOptions {
     pub sheet: SheetOptions,
     /// What strands become in the GLB.
     pub strands: StrandForm,
-    /// Farthest that a written strand may lie from its true course, cm.
-    pub tolerance: f32,
+    /// Farthest that a written strand may lie from its true course, and a vertex of what moves from its place at any frame,
+    /// cm; the usual when left out.
+    pub tolerance: Option<f32>,
+    /// How strands that move are written in the GLB.
+    pub motion: MotionForm,
     /// A second GLB with the guides.
     pub guides: bool,
     /// The files for other programs.
@@ -125,6 +129,8 @@ pub struct Report {
     pub stages: Vec<Stage>,
     /// What was done to keep within the triangles.
     pub budget: Option<Budget>,
+    /// How the parts of the GLB move.
+    pub motions: Vec<PartMotion>,
     /// The files, in the order they were put into place; or why there are none.
     pub written: Result<Vec<Written>, RunError>,
 }
@@ -162,7 +168,7 @@ pub fn exports(options: &RunOptions, report: &mut Report, task: &Task) {
 pub(super) fn prepare(options: &RunOptions, files: Arc<dyn Files>, task: &Task) -> Report {
     let mut stages = vec![];
     let outcome = timed(&mut stages, "script", || script::run(&options.script, files, task));
-    let mut report = Report { outcome, figures: vec![], stages, budget: None, written: Ok(vec![]) };
+    let mut report = Report { outcome, figures: vec![], stages, budget: None, motions: vec![], written: Ok(vec![]) };
     let Some(scene) = report.outcome.scene.as_mut() else { return report };
     if let Some(background) = options.background {
         scene.look.background = background;
@@ -214,6 +220,11 @@ fn finish(
         (Ending::Done, Some(scene)) => make(scene, stages).and_then(|outputs| {
             // Cancelled at the very end: what was made is not wanted any more.
             task.check().map_err(|_| RunError::Cancelled)?;
+            let glb = format!("{}.{}", options.script.name(), Format::Glb.ending());
+            let moves = scene.timeline().is_some();
+            if let Some(file) = outputs.iter().find(|o| moves && o.name == glb) {
+                report.motions = motions(&file.bytes);
+            }
             Ok(timed(stages, "write", || write_until(&options.out, &outputs, task))?)
         }),
         (Ending::Done | Ending::Failed, _) => Err(RunError::Script),
@@ -241,7 +252,14 @@ fn pictures(
 /// The files of a run for other programs, in memory.
 fn models(options: &RunOptions, scene: &Scene, task: &Task, stages: &mut Vec<Stage>) -> Result<Vec<Output>, RunError> {
     let name = &options.script.name();
-    let glb_options = GlbOptions { strands: options.strands, tolerance: options.tolerance, ..GlbOptions::default() };
+    let usual = GlbOptions::default();
+    let glb_options = GlbOptions {
+        strands: options.strands,
+        tolerance: options.tolerance.unwrap_or(usual.tolerance),
+        motion_tolerance: options.tolerance,
+        motion: options.motion,
+        ..usual
+    };
     let memo = &options.script.memo;
     let key = |what| {
         let mut key = scene_key(what, scene, Shows::Places, memo);

@@ -55,7 +55,7 @@ coif.test("a lock on a head that turns trails behind it", function(t)
       lag = lag,
     }
   end
-  local rigid, trailing = clip(nil), clip { frequency = 1.5 }
+  local rigid, trailing = clip(nil), clip { hold = 6 }
   t:equal(trailing.frames, turn.frames)
   -- The head turns to its left, so the back of the head goes to its right: the tip stays behind, to the left.
   local function at(what, frame) return t:scene(coif.scene { what }, frame):stats() end

@@ -65,6 +65,7 @@ local locks = {
   bun_and_tail = { 1, 14 },
   many_locks   = { 1, 13 },
   one_lock     = { 1, 10 },
+  sixty_locks  = { 1, 16 },
 }
 local names = {}
 for name in pairs(locks) do
@@ -79,6 +80,7 @@ for _, name in ipairs(names) do
     end
     local one, other = scene:at(locks[name][1]):stats(), scene:at(locks[name][2]):stats()
     t:equal(one.triangles, other.triangles)
+    if name == "sixty_locks" then t:equal(one.tufts, 69) end
     t:greater(apart(one, other), 0.5)
     for _, frame in locks[name] do
       t:preview(scene, "moving_" .. name .. "_" .. frame, { frame = frame, size = 120, views = { "back" } })

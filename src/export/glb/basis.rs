@@ -41,66 +41,104 @@ impl Basis {
     }
 }
 
-/// The fewest shapes found with which every vertex at every frame is within `tolerance` cm of `at(frame)`; at the most
-/// as many as there are frames, which meets them all but for rounding.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn basis(
-    rest: &Vertices,
-    frames: usize,
-    at: impl Fn(usize) -> Vertices,
-    tolerance: f32,
-    task: &Task,
-) -> Result<Basis, Cancelled> {
-    let count = rest.positions.len();
-    if count == 0 || frames == 0 {
-        return Ok(Basis { weights: vec![vec![]; frames], ..Basis::default() });
-    }
-    let step = count.div_ceil(SAMPLED);
-    let mut moved: Vec<Vec<Vec3>> = Vec::with_capacity(frames);
-    for f in 0..frames {
-        task.check()?;
-        task.progress("shapes", 0.3 * f as f32 / frames as f32);
-        let now = at(f).positions;
-        moved.push((0..count).step_by(step).map(|v| now[v] - rest.positions[v]).collect());
-    }
-    let stride = frames.div_ceil(SNAPSHOTS);
-    let snapshots: Vec<usize> = (0..frames).step_by(stride).collect();
-    let directions = directions(&snapshots.iter().map(|&f| &*moved[f]).collect::<Vec<_>>());
-    task.check()?;
+/// What some of the vertices say about how many shapes are needed.
+pub struct Sampled {
+    /// Displacements of the sampled vertices, frame by frame.
+    moved: Vec<Vec<Vec3>>,
+    /// What the shapes so far leave of them.
+    left: Vec<Vec<Vec3>>,
+    snapshots: Vec<usize>,
+    directions: Vec<Vec<f64>>,
+    weights: Vec<Vec<f32>>,
+    wanted: usize,
+}
 
-    // On the sampled vertices: shapes, and weights of all frames.
-    let mut weights: Vec<Vec<f32>> = vec![vec![]; frames];
-    let mut wanted = 0;
-    let mut left = moved.clone();
-    let farthest = |left: &[Vec<Vec3>]| left.par_iter().flatten().map(|d| d.length()).reduce(|| 0.0, f32::max);
-    while wanted < directions.len() && farthest(&left) > 0.7 * tolerance {
-        add_shape(&directions[wanted], &snapshots, &moved, &mut left, &mut weights);
-        wanted += 1;
-        task.check()?;
-    }
-    loop {
-        let mut basis = Basis { shapes: vec![], weights: weights.clone(), error: 0.0 };
-        basis.shapes = shapes(rest, &directions[..wanted], &snapshots, &at, task)?;
-        for (k, shape) in basis.shapes.iter_mut().enumerate() {
-            let most = weights.iter().map(|w| w[k].abs()).fold(0.0, f32::max).max(1e-20);
-            shape.positions.iter_mut().chain(&mut shape.normals).for_each(|d| *d *= most);
-            basis.weights.iter_mut().for_each(|w| w[k] /= most);
-        }
+impl Sampled {
+    /// Looks at some vertices of every frame.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn new(
+        rest: &Vertices,
+        frames: usize,
+        at: impl Fn(usize) -> Vertices,
+        tolerance: f32,
+        task: &Task,
+    ) -> Result<Self, Cancelled> {
+        let count = rest.positions.len();
+        let step = count.div_ceil(SAMPLED).max(1);
+        let mut moved: Vec<Vec<Vec3>> = Vec::with_capacity(frames);
         for f in 0..frames {
             task.check()?;
-            task.progress("shapes", 0.6 + 0.4 * f as f32 / frames as f32);
-            basis.error = basis.error.max(error(rest, &at(f).positions, &basis, f));
+            task.progress("shapes", 0.3 * f as f32 / frames as f32);
+            let now = at(f).positions;
+            moved.push((0..count).step_by(step).map(|v| now[v] - rest.positions[v]).collect());
         }
-        if basis.error <= tolerance || wanted == directions.len() {
-            return Ok(basis);
+        let stride = frames.div_ceil(SNAPSHOTS).max(1);
+        let snapshots: Vec<usize> = (0..frames).step_by(stride).collect();
+        let directions = directions(&snapshots.iter().map(|&f| &*moved[f]).collect::<Vec<_>>());
+        let (left, weights) = (moved.clone(), vec![vec![]; frames]);
+        let mut sampled = Self { moved, left, snapshots, directions, weights, wanted: 0 };
+        while !sampled.is_complete() && sampled.farthest() > 0.7 * tolerance {
+            sampled.add();
+            task.check()?;
         }
-        // The vertices that were not sampled ask for more.
-        for _ in 0..(wanted / 8).max(1) {
-            if wanted < directions.len() {
-                add_shape(&directions[wanted], &snapshots, &moved, &mut left, &mut weights);
-                wanted += 1;
+        Ok(sampled)
+    }
+
+    /// Shapes that the sampled vertices need.
+    pub fn wanted(&self) -> usize {
+        self.wanted
+    }
+
+    fn is_complete(&self) -> bool {
+        self.wanted == self.directions.len()
+    }
+
+    fn farthest(&self) -> f32 {
+        self.left.par_iter().flatten().map(|d| d.length()).reduce(|| 0.0, f32::max)
+    }
+
+    fn add(&mut self) {
+        let direction = &self.directions[self.wanted];
+        add_shape(direction, &self.snapshots, &self.moved, &mut self.left, &mut self.weights);
+        self.wanted += 1;
+    }
+
+    /// The fewest shapes found with which every vertex at every frame is within `tolerance` cm of `at(frame)`; at the most
+    /// as many as there are frames, which meets them all but for rounding.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn basis(
+        mut self,
+        rest: &Vertices,
+        at: impl Fn(usize) -> Vertices,
+        tolerance: f32,
+        task: &Task,
+    ) -> Result<Basis, Cancelled> {
+        let frames = self.weights.len();
+        loop {
+            let mut basis = Basis { shapes: vec![], weights: self.weights.clone(), error: 0.0 };
+            basis.shapes = shapes(rest, &self.directions[..self.wanted], &self.snapshots, &at, task)?;
+            for (k, shape) in basis.shapes.iter_mut().enumerate() {
+                let most = self.weights.iter().map(|w| w[k].abs()).fold(0.0, f32::max).max(1e-20);
+                shape.positions.iter_mut().chain(&mut shape.normals).for_each(|d| *d *= most);
+                basis.weights.iter_mut().for_each(|w| w[k] /= most);
+            }
+            for f in 0..frames {
+                task.check()?;
+                task.progress("shapes", 0.6 + 0.4 * f as f32 / frames as f32);
+                basis.error = basis.error.max(error(rest, &at(f).positions, &basis, f));
+            }
+            if basis.error <= tolerance || self.is_complete() {
+                return Ok(basis);
+            }
+            // The vertices that were not sampled ask for more.
+            for _ in 0..(self.wanted / 8).max(1) {
+                if !self.is_complete() {
+                    self.add();
+                }
             }
         }
     }
@@ -232,6 +270,16 @@ mod tests {
 
     fn line(at: impl Fn(f32) -> Vec3) -> Vertices {
         Vertices { positions: (0..500).map(|i| at(i as f32 / 499.0)).collect(), normals: vec![] }
+    }
+
+    fn basis(
+        rest: &Vertices,
+        frames: usize,
+        at: impl Fn(usize) -> Vertices,
+        tolerance: f32,
+        task: &Task,
+    ) -> Result<Basis, Cancelled> {
+        Sampled::new(rest, frames, &at, tolerance, task)?.basis(rest, at, tolerance, task)
     }
 
     #[test]

@@ -8,6 +8,8 @@ pub const VERTICES: u32 = 34962;
 pub const INDICES: u32 = 34963;
 /// Component type `UNSIGNED_BYTE`.
 pub const U8: u32 = 5121;
+/// Component type `SHORT`.
+pub const I16: u32 = 5122;
 /// Component type `UNSIGNED_SHORT`.
 pub const U16: u32 = 5123;
 /// Component type `UNSIGNED_INT`.
@@ -30,6 +32,8 @@ pub struct Document {
     pub nodes: Vec<Node>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub meshes: Vec<MeshEntry>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub skins: Vec<Skin>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub animations: Vec<Animation>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -82,6 +86,8 @@ pub struct Node {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    pub skin: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub translation: Option<[f32; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotation: Option<[f32; 4]>,
@@ -121,9 +127,21 @@ pub struct PartExtras {
     pub motion: Option<MotionExtras>,
 }
 
+/// Joints, and where they are when the mesh is at rest.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Skin {
+    pub name: String,
+    pub inverse_bind_matrices: u32,
+    pub skeleton: u32,
+    pub joints: Vec<u32>,
+}
+
 /// How near the animation is to the motion that it was made from.
 #[derive(Serialize, Clone, Debug)]
 pub struct MotionExtras {
+    /// What moves it: `node`, `shapes` or `joints`.
+    pub form: &'static str,
     /// Frames of the motion.
     pub frames: usize,
     /// Of these in a second.
@@ -132,7 +150,14 @@ pub struct MotionExtras {
     pub looped: bool,
     /// Morph targets.
     pub shapes: usize,
-    /// Frames that have keys.
+    /// Joints, and the chains that they make up.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joints: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub chains: Option<usize>,
+    /// About the bytes that the motion takes.
+    pub bytes: usize,
+    /// Frames that have keys; of chains, those of the one that has most.
     pub keys: usize,
     /// No vertex is farther than this from its place at any frame.
     pub error_cm: f32,
@@ -178,10 +203,10 @@ pub struct Target {
 }
 
 #[derive(Serialize)]
+/// Linear interpolation, as when nothing is said.
 pub struct AnimationSampler {
     /// The accessor of the times, seconds.
     pub input: u32,
-    pub interpolation: &'static str,
     pub output: u32,
 }
 

@@ -6,14 +6,16 @@
 //! (`_STRAND_ID`), its guide (`_GUIDE_ID`), where strands of several script lines are in one part also the line
 //! (`_SOURCE`, an index into the node's `extras.coif.sources`), and has the strand's diameter in metres (`_WIDTH`).
 //!
-//! A scene that moves has one animation. What moves as a whole is an animated node; every other motion is a mixture of
-//! morph targets, as seen from the node that carries it. `extras.coif.motion` of a part says how near it comes.
+//! A scene that moves has one animation. What moves as a whole is an animated node; a surface is a mixture of morph
+//! targets, as seen from the node that carries it; strands are that, or follow chains of joints along their guides,
+//! whichever takes less. `extras.coif.motion` of a part says what was chosen and how near it comes.
 //!
 //! Stylised hair is one mesh with one material: uv in an atlas (`v` from root to tip), tangents along `u`, the tuft's
 //! colour as vertex colour, `_TUFT_ID`, and `_SOURCE` where several script lines made tufts.
 
 mod basis;
 mod buffer;
+mod chains;
 mod document;
 mod frames;
 mod keys;
@@ -21,6 +23,8 @@ mod locks;
 mod material;
 mod motion;
 mod shapes;
+mod skin;
+mod told;
 
 use std::borrow::Cow;
 
@@ -30,8 +34,9 @@ use self::buffer::{Pen, Plan, Slot};
 use self::document::{Buffer, Document, Extras, MeshEntry, Node, PartExtras, Primitive, SceneNodes};
 use self::motion::Film;
 use self::shapes::{Drawn, METRES};
+pub use self::told::{PartMotion, motions};
 use super::reduce::reduce;
-use super::{ExportError, check_hair, check_motion, check_tolerance, with_normals};
+use super::{ExportError, check_hair, check_motion, check_tolerance, frames_of, with_normals};
 use crate::geometry::{Mesh, Strands};
 use crate::scene::{Body, HairMaterial, Locks, Part, Scene};
 use crate::task::Task;
@@ -48,6 +53,18 @@ crate::choices! {
     }
 }
 
+crate::choices! {
+    /// How strands that move are written.
+    pub enum MotionForm {
+        /// As shapes or as joints, whichever takes less.
+        Auto = "auto",
+        /// As mixtures of morph targets.
+        Shapes = "shapes",
+        /// By chains of joints that they follow.
+        Joints = "joints",
+    }
+}
+
 crate::params! {
     /// How a scene is written as GLB.
     #[derive(PartialEq)]
@@ -58,8 +75,11 @@ crate::params! {
         tolerance: f32 = 0.1, unit("cm"), range(0.0, 10.0);
         /// How a scene that moves is written: with its animation, or at the frame of its still pictures.
         animation: bool = true;
-        /// At no frame is a vertex of the animation farther than this from its place.
-        motion_tolerance: f32 = 0.05, unit("cm"), range(0.0, 10.0);
+        /// At no frame is a vertex of the animation farther than this from its place; when left out 0.1, for strands that move
+        /// farther than 5 cm a fiftieth of their way.
+        motion_tolerance: Option<f32>, unit("cm"), range(0.0, 10.0);
+        /// How strands that move are written.
+        motion: MotionForm = MotionForm::Auto;
         /// A larger file is refused; the format itself ends at 4294967295.
         max_bytes: u64 = u64::from(u32::MAX), unit("bytes"), range(0.0, 4294967295.0);
     }
@@ -77,7 +97,7 @@ impl Default for GlbOptions {
 /// [`ExportError`]: too large, not finite, indices out of range, a placement that is not rigid, cancelled.
 pub fn glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Vec<u8>, ExportError> {
     check_tolerance(options.tolerance)?;
-    check_tolerance(options.motion_tolerance)?;
+    options.motion_tolerance.map_or(Ok(()), check_tolerance)?;
     if !options.animation && scene.timeline().is_some() {
         return glb(&scene.still(), options, task);
     }
@@ -118,9 +138,16 @@ pub fn glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Vec<u8>, 
             }
             Body::Hair(hair) => {
                 check_hair(part, hair)?;
-                file.strands(part, &hair.strands, &hair.material, (options.strands, options.tolerance), task, |e| {
-                    e.guides = Some(hair.guides.count());
-                })?;
+                file.strands(
+                    part,
+                    &hair.strands,
+                    &hair.material,
+                    (options.strands, options.tolerance, options.motion),
+                    task,
+                    |e| {
+                        e.guides = Some(hair.guides.count());
+                    },
+                )?;
             }
         }
     }
@@ -139,7 +166,9 @@ pub fn guides_glb(scene: &Scene, options: &GlbOptions, task: &Task) -> Result<Ve
     for (part, hair) in scene.hair() {
         check_hair(part, hair)?;
         let named = Part { name: format!("{} guides", part.name), motion: None, ..part.clone() };
-        file.strands(&named, &hair.guides, &hair.material, (StrandForm::Lines, 0.0), task, |e| e.kind = "guides")?;
+        file.strands(&named, &hair.guides, &hair.material, (StrandForm::Lines, 0.0, MotionForm::Auto), task, |e| {
+            e.kind = "guides";
+        })?;
     }
     file.finish(options.max_bytes, task)
 }
@@ -204,7 +233,7 @@ impl<'a> File<'a> {
         part: &Part,
         strands: &'a Strands,
         look: &'a HairMaterial,
-        (form, tolerance): (StrandForm, f32),
+        (form, tolerance, motion): (StrandForm, f32, MotionForm),
         task: &Task,
         more: impl FnOnce(&mut PartExtras),
     ) -> Result<(), ExportError> {
@@ -226,7 +255,8 @@ impl<'a> File<'a> {
             return Ok(());
         }
         task.progress("reducing strands", 0.0);
-        let drawn = Drawn { strands, blocks: reduce(strands, tolerance, task)?, look };
+        let blocks = reduce(strands, &frames_of(part), tolerance, task)?;
+        let mut drawn = Drawn { strands, blocks, look, shifts: vec![] };
         let document = &mut self.document;
         if form == StrandForm::Ribbons {
             let (attributes, vertices, indices) = drawn.ribbon_layout();
@@ -235,7 +265,7 @@ impl<'a> File<'a> {
             let (range, view) = self.plan.blob(document, ramp.len());
             let material = material::ribbons(document, &part.name, look, view);
             let place = self.part(part, Some((&slot, material, document::TRIANGLES)), extras);
-            self.hair(part, place, &drawn, true, task)?;
+            drawn.shifts = self.hair(part, place, &drawn, true, motion, task)?;
             self.jobs.push(Job::Blob(ramp, range));
             self.jobs.push(Job::Ribbons(drawn, slot));
         } else {
@@ -243,7 +273,7 @@ impl<'a> File<'a> {
             let slot = self.plan.primitive(document, &attributes, vertices, indices);
             let material = material::lines(document, &part.name, look);
             let place = self.part(part, Some((&slot, material, document::LINES)), extras);
-            self.hair(part, place, &drawn, false, task)?;
+            drawn.shifts = self.hair(part, place, &drawn, false, motion, task)?;
             self.jobs.push(Job::Lines(drawn, slot));
         }
         Ok(())

@@ -5,20 +5,27 @@
 
 use glam::{Affine3A, Vec3};
 
-use super::basis::{Basis, Vertices, basis};
+use super::basis::{Basis, Sampled, Vertices};
+use super::chains::{Chains, Hair, Most};
 use super::document::{
     self as json, Accessor, Animation, AnimationSampler, Channel, MeshExtras, MotionExtras, Node, Sparse,
     SparseIndices, SparseValues, Target,
 };
 use super::keys::{Placing, placings, reduce, share};
 use super::shapes::{Drawn, METRES};
-use super::{File, Job, Place};
+use super::skin::Tracked;
+use super::{File, Job, MotionForm, Place};
+use crate::export::ExportError;
 use crate::geometry::{Bounds, Clip, Mesh, Strands};
 use crate::scene::{Body, Motion, Part, Scene, Timeline};
 use crate::task::{Cancelled, Task};
 
 /// The part of the tolerance that shapes may use; keys have the rest.
 const SHAPES: f32 = 0.6;
+/// How far what moves may be from its place, unless it is said, cm.
+const USUAL: f32 = 0.1;
+/// The same for strands that move far: this part of their way.
+const OF_TRAVEL: f32 = 0.02;
 /// A displacement that is none, cm.
 const NOTHING: f32 = 1e-6;
 /// Sparse entries cost an index besides their values: worth it below this share.
@@ -28,6 +35,9 @@ const SPARSE: f32 = 0.75;
 pub struct Film {
     name: String,
     timeline: Timeline,
+    /// What was asked for, cm.
+    given: Option<f32>,
+    /// That, or the usual.
     tolerance: f32,
     carrier: Option<Carrier>,
     channels: Vec<Channel>,
@@ -67,18 +77,21 @@ impl Film {
         self.timeline.frames + usize::from(self.timeline.looped)
     }
 
-    fn extras(&self, shapes: usize, keys: usize, error_cm: f32) -> MotionExtras {
+    /// What is told of the motion of a part.
+    fn extras(&self, form: &'static str, keys: usize, error_cm: f32) -> MotionExtras {
         let Timeline { frames, rate, looped } = self.timeline;
-        MotionExtras { frames, rate, looped, shapes, keys, error_cm }
+        let (joints, chains) = (None, None);
+        MotionExtras { form, frames, rate, looped, shapes: 0, joints, chains, bytes: 0, keys, error_cm }
     }
 }
 
 impl File<'_> {
     /// Makes ready for a scene that moves: with a node for everything that the head's motion carries.
-    pub(super) fn begin(&mut self, scene: &Scene, tolerance: f32) {
+    pub(super) fn begin(&mut self, scene: &Scene, given: Option<f32>) {
         let Some(timeline) = scene.timeline() else { return };
         let (channels, samplers) = (vec![], vec![]);
-        let mut film = Film { name: scene.name.clone(), timeline, tolerance, carrier: None, channels, samplers };
+        let tolerance = given.unwrap_or(USUAL);
+        let mut film = Film { name: scene.name.clone(), timeline, given, tolerance, carrier: None, channels, samplers };
         // The head's motion before any other's.
         let rigid = |head: bool| {
             scene.parts.iter().find_map(move |p| match (&p.body, &p.motion) {
@@ -145,28 +158,79 @@ impl File<'_> {
         Ok(())
     }
 
-    /// The motion of strands.
+    /// The motion of strands: by shapes or by joints, whichever takes less, unless one of them is asked for. Gives how far
+    /// each drawn node is to be shifted at rest, if at all.
     pub(super) fn hair(
         &mut self,
         part: &Part,
         place: Place,
         drawn: &Drawn,
         is_ribbons: bool,
+        form: MotionForm,
         task: &Task,
-    ) -> Result<(), Cancelled> {
-        match &part.motion {
-            Some(Motion::Rigid(clip)) => self.rigid(place, clip, drawn.strands.bounds()),
-            Some(Motion::Strands { strands, .. }) => {
+    ) -> Result<Vec<Vec3>, ExportError> {
+        match (&part.motion, &part.body) {
+            (Some(Motion::Rigid(clip)), _) => self.rigid(place, clip, drawn.strands.bounds()),
+            (Some(Motion::Strands { strands, guides }), Body::Hair(hair)) => {
+                let Some(film) = &self.film else { return Ok(vec![]) };
+                let (frames, moments, rate) = (film.timeline.frames, film.moments(), film.timeline.rate);
                 let unplaced = self.unplaced(place);
+                let travel = || {
+                    let way = |f: usize| {
+                        let by = unplaced(f);
+                        let now = strands.at(f).map_or(&[][..], |s| &s.points);
+                        let ways = now.iter().zip(&drawn.strands.points);
+                        ways.map(|(p, rest)| by.transform_point3(*p).distance(*rest)).fold(0.0, f32::max)
+                    };
+                    (0..frames).map(way).fold(0.0, f32::max)
+                };
+                let tolerance = film.given.unwrap_or_else(|| film.tolerance.max(OF_TRAVEL * travel()));
+                let rest = drawn.vertices(is_ribbons, None);
                 let at = |frame: usize| {
                     let now: Option<(&Strands, Affine3A)> = strands.at(frame).map(|s| (&**s, unplaced(frame)));
                     drawn.vertices(is_ribbons, now.as_ref().map(|(s, by)| (*s, by)))
                 };
-                self.morph(place, &drawn.vertices(is_ribbons, None), at, task)?;
+                let sampled = match form {
+                    MotionForm::Joints => None,
+                    MotionForm::Auto | MotionForm::Shapes => {
+                        Some(Sampled::new(&rest, frames, at, SHAPES * tolerance, task)?)
+                    }
+                };
+                let most = match (form, &sampled) {
+                    (MotionForm::Joints, _) | (_, None) => Some(Most::ALL),
+                    (MotionForm::Auto, Some(sampled)) => {
+                        Some(Most { joints: Most::EASY, bytes: shape_bytes(&rest, sampled.wanted(), frames) })
+                    }
+                    (MotionForm::Shapes, Some(_)) => None,
+                };
+                if let Some(most) = most {
+                    let placed = |f: usize| strands.at(f).map(|s| (&**s, unplaced(f)));
+                    // Guides that do not move, though the strands do, show nothing.
+                    let moves = !std::sync::Arc::ptr_eq(&hair.guides, &hair.strands)
+                        && guides.frames.windows(2).any(|w| w[0].points != w[1].points);
+                    let led = moves
+                        .then(|| (&*hair.guides, (0..frames).filter_map(|f| guides.at(f).map(|g| &**g)).collect()));
+                    let tracked = Tracked::new(drawn, is_ribbons, (0..frames).filter_map(placed).collect(), led);
+                    if let Some(chains) = Chains::new(&tracked, moments, tolerance, most, task)? {
+                        self.skin(place, &chains, tracked.each(), rate);
+                        let keys = chains.chains.iter().map(|c| c.keys.len()).max().unwrap_or(0);
+                        if let Some(film) = &self.film {
+                            let extras = film.extras("joints", keys, chains.error);
+                            let (joints, count) = (Some(chains.joints()), Some(chains.chains.len()));
+                            let bytes = chains.bytes(rest.positions.len());
+                            self.note(place, MotionExtras { joints, chains: count, bytes, ..extras });
+                        }
+                        return Ok(chains.shifts);
+                    }
+                }
+                match sampled {
+                    Some(sampled) => self.shapes(place, &rest, sampled, at, tolerance, task)?,
+                    None => return Err(ExportError::Joints { part: part.name.clone(), tolerance }),
+                }
             }
-            Some(Motion::Surface(_)) | None => {}
+            _ => {}
         }
-        Ok(())
+        Ok(vec![])
     }
 
     /// Leads from a frame to the carrier's own space, as the file has it.
@@ -186,12 +250,12 @@ impl File<'_> {
                 (keys, error)
             }
         };
-        self.note(place, 0, keys, error);
+        let Some(film) = &self.film else { return };
+        let extras = film.extras("node", keys, error);
+        self.note(place, MotionExtras { bytes: 32 * keys, ..extras });
     }
 
-    fn note(&mut self, place: Place, shapes: usize, keys: usize, error: f32) {
-        let Some(film) = &self.film else { return };
-        let motion = film.extras(shapes, keys, error);
+    fn note(&mut self, place: Place, motion: MotionExtras) {
         if let Some(extras) = &mut self.document.nodes[place.node as usize].extras {
             extras.coif.motion = Some(motion);
         }
@@ -222,10 +286,28 @@ impl File<'_> {
         at: impl Fn(usize) -> Vertices,
         task: &Task,
     ) -> Result<(), Cancelled> {
+        let Some(film) = &self.film else { return Ok(()) };
+        let film_tolerance = film.tolerance;
+        let sampled = Sampled::new(rest, film.timeline.frames, &at, SHAPES * film_tolerance, task)?;
+        self.shapes(place, rest, sampled, at, film_tolerance, task)
+    }
+
+    /// The same, when some of the vertices were looked at.
+    fn shapes(
+        &mut self,
+        place: Place,
+        rest: &Vertices,
+        sampled: Sampled,
+        at: impl Fn(usize) -> Vertices,
+        tolerance: f32,
+        task: &Task,
+    ) -> Result<(), Cancelled> {
         let (Some(film), Some(mesh)) = (&self.film, place.mesh) else { return Ok(()) };
         let (frames, count, rate) = (film.timeline.frames, film.moments(), film.timeline.rate);
-        let tolerance = film.tolerance;
-        let found: Basis = basis(rest, frames, at, SHAPES * tolerance, task)?;
+        let found: Basis = sampled.basis(rest, at, SHAPES * tolerance, task)?;
+        let before = self.plan.length();
+        let Some(film) = &self.film else { return Ok(()) };
+        let told = film.extras("shapes", 0, 0.0);
         let reaches = found.reaches();
         let weight = |frame: usize, k: usize| found.weights[frame % frames][k];
         let missed = |from: usize, to: usize, frame: usize| -> f32 {
@@ -265,14 +347,15 @@ impl File<'_> {
                 primitive.targets = targets;
             }
         }
-        self.note(place, shapes, kept.len(), error);
+        let bytes = (self.plan.length() - before) as usize;
+        self.note(place, MotionExtras { shapes, bytes, keys: kept.len(), error_cm: error, ..told });
         Ok(())
     }
 
-    fn channel(&mut self, node: u32, path: &'static str, input: u32, output: u32) {
+    pub(super) fn channel(&mut self, node: u32, path: &'static str, input: u32, output: u32) {
         let Some(film) = &mut self.film else { return };
         let sampler = film.samplers.len() as u32;
-        film.samplers.push(AnimationSampler { input, interpolation: "LINEAR", output });
+        film.samplers.push(AnimationSampler { input, output });
         film.channels.push(Channel { sampler, target: Target { node, path } });
     }
 
@@ -352,4 +435,9 @@ impl File<'_> {
             self.document.animations.push(Animation { name, channels, samplers });
         }
     }
+}
+
+/// About the bytes that so many shapes take.
+fn shape_bytes(rest: &Vertices, shapes: usize, frames: usize) -> usize {
+    12 * shapes * (rest.positions.len() + rest.normals.len()) + 4 * shapes * frames
 }

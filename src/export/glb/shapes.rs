@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::basis::Vertices;
 use super::buffer::{Attribute, Pen, Slot};
+use super::chains::Way;
 use super::document as json;
 use super::frames::{Frame, moved, ribbon};
 use crate::export::appearance;
@@ -33,9 +34,15 @@ pub struct Drawn<'a> {
     pub blocks: Vec<Block>,
     /// How they look.
     pub look: &'a HairMaterial,
+    /// Per kept node how far it is written from its place, cm; none for not at all.
+    pub shifts: Vec<Vec3>,
 }
 
 impl Drawn<'_> {
+    fn shift(&self, node: usize) -> Vec3 {
+        self.shifts.get(node).copied().unwrap_or_default()
+    }
+
     fn has_sources(&self) -> bool {
         self.strands.sources.len() > 1
     }
@@ -86,12 +93,13 @@ impl Drawn<'_> {
             let shade =
                 (appearance::brightness(self.look, root.id) / appearance::brightest(self.look) * 255.0).round() as u8;
             let mut bounds = Bounds::EMPTY;
-            for f in scratch.iter() {
+            for (k, f) in scratch.iter().enumerate() {
                 let width = appearance::width(self.look, f.v);
+                let shift = self.shift(first as usize / 2 + k);
                 // Seen from outside with the root below, u runs from left to right.
                 let side = f.tangent.cross(f.normal) * (0.5 * width);
                 for (u, position) in [(0.0, f.position - side), (1.0, f.position + side)] {
-                    let position = position * METRES;
+                    let position = (position + shift) * METRES;
                     bounds = Bounds { min: bounds.min.min(position), max: bounds.max.max(position) };
                     vertices.vec3(position);
                     vertices.vec3(f.normal);
@@ -121,8 +129,8 @@ impl Drawn<'_> {
         self.write(bytes, slot, (1, 2), task, |strand, nodes, first, vertices, indices, _| {
             let points = nodes.iter().map(|&n| self.strands.points[n as usize]);
             let mut bounds = Bounds::EMPTY;
-            for (p, v) in points.clone().zip(appearance::shares(points)) {
-                let position = p * METRES;
+            for (k, (p, v)) in points.clone().zip(appearance::shares(points)).enumerate() {
+                let position = (p + self.shift(first as usize + k)) * METRES;
                 bounds = Bounds { min: bounds.min.min(position), max: bounds.max.max(position) };
                 vertices.vec3(position);
                 for channel in root_colour.lerp(tip_colour, v).to_array() {
@@ -163,8 +171,7 @@ impl Drawn<'_> {
                         moved(&rest, nodes.iter().map(|&n| point(n)), &mut now);
                     }
                     for f in if at.is_some() { &now } else { &rest } {
-                        let side = f.tangent.cross(f.normal) * (0.5 * appearance::width(self.look, f.v));
-                        out.positions.extend([f.position - side, f.position + side]);
+                        out.positions.extend(self.edges(f));
                         out.normals.extend([f.normal; 2]);
                     }
                 }
@@ -177,6 +184,26 @@ impl Drawn<'_> {
             all.normals.extend(block.normals);
         }
         all
+    }
+
+    /// The two vertices of a ribbon's node.
+    fn edges(&self, f: &Frame) -> [Vec3; 2] {
+        let side = f.tangent.cross(f.normal) * (0.5 * appearance::width(self.look, f.v));
+        [f.position - side, f.position + side]
+    }
+
+    /// The vertices of one strand's ribbon, at rest and at each frame, from its drawn nodes.
+    pub fn ribbon_way(&self, strand: usize, drawn: &Way) -> Way {
+        let (mut rest, mut now) = (Vec::new(), Vec::new());
+        ribbon(drawn.rest.iter().copied(), self.strands.roots[strand].normal, &mut rest);
+        let frame = |points: &Vec<Vec3>| {
+            moved(&rest, points.iter().copied(), &mut now);
+            now.iter().flat_map(|f| self.edges(f)).collect()
+        };
+        Way {
+            frames: drawn.frames.iter().map(frame).collect(),
+            rest: rest.iter().flat_map(|f| self.edges(f)).collect(),
+        }
     }
 
     fn write_identity(&self, strand: usize, vertices: &mut Pen) {

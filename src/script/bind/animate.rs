@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Affine3A, Vec2, Vec3};
 
 use super::super::call::{Call, Result};
 use super::super::registry::{Entry, Getter, Noun};
@@ -11,8 +11,9 @@ use super::clip::MovingLocks;
 use super::head::give;
 use super::posed::{Posed, posed};
 use super::tuft::{head_of, points_of};
-use crate::animate::{AnimateError, Lag, PathOptions, Rig, animate_all, carried, lagging};
-use crate::geometry::{Clip, Mesh};
+use crate::animate::{AnimateError, PathOptions, Rig, animate_all, carried};
+use crate::dynamics::{Body, Hair, HairOptions, SimulateOptions, simulate};
+use crate::geometry::{Clip, Mesh, Root, Strands};
 use crate::head::HeadMotion;
 use crate::math::Digest;
 use crate::params::{FieldType, Function, Kind, Object, Reader, Value};
@@ -105,6 +106,18 @@ crate::params! {
 }
 
 crate::params! {
+    /// How the handles of a lock trail behind a head that moves: as hair along the lock's middle does.
+    pub struct Lag("coif.lag") {
+        /// How well the hair keeps its shape, as in `strands:simulate`: more is stiffer and swings faster.
+        hold: f32 = 8.0, unit("cm"), range(0.0, 1000.0);
+        /// How strongly the air brakes it: more dies sooner.
+        drag: f32 = 3.0, unit("1/s"), range(0.0, 1000.0);
+        /// How much of the lag is shown.
+        amount: f32 = 1.0, range(0.0, 2.0);
+    }
+}
+
+crate::params! {
     /// Locks that move: posed states, and paths for their handles. The whole surface follows in the way the states show.
     pub struct AnimateOptions("coif.animate") {
         /// The rest, and the same locks posed in other ways: all tufts with the same number of locks, or all pieces of one
@@ -125,7 +138,7 @@ crate::params! {
         stagger: f32 = 0.0, unit("s"), range(-100.0, 100.0);
         /// What the head does meanwhile: the locks are carried along.
         motion: Option<Arc<HeadMotion>>;
-        /// Lets the handles trail behind the head's motion: `{}`, or how.
+        /// Lets the handles trail behind the head's motion, as hair does: `{}`, or how.
         lag: Option<Lag>;
     }
 }
@@ -222,7 +235,8 @@ fn animate(call: &Call) -> Result<Value> {
     let posed = posed(call, &options.states)?;
     let time = Timing::new(call, &options)?;
     let jobs = jobs(call, &options, &posed)?;
-    let mut key = Digest::new("animate 1");
+    let mut key = Digest::new("animate 2");
+    key.key(posed.rest.head().key());
     key.data(&(time.rate, options.r#loop, options.stagger, &options.lag));
     for frame in options.motion.iter().flat_map(|m| &m.clip.frames) {
         key.data(&**frame);
@@ -389,6 +403,10 @@ fn frames(
         if job.handles.is_empty() {
             continue;
         }
+        let trail = match (&options.motion, &options.lag) {
+            (Some(motion), Some(lag)) => Some(Trail::new(call, posed, number, motion, lag, options.r#loop)?),
+            _ => None,
+        };
         let mut paths = vec![];
         for (h, (_, path, field)) in job.handles.iter().enumerate() {
             let rest = rig.handle_at(h, 0).unwrap_or_default();
@@ -420,12 +438,10 @@ fn frames(
                 let message = format!("the path has {} frames, the motion of the head {of_motion}", way.len());
                 return Err(call.problem_at(field, message, Some(format!("give it `frames = {of_motion}`"))));
             }
-            let way = match (&options.motion, &options.lag) {
-                (Some(motion), Some(lag)) => lagging(&way, &motion.clip, lag, options.r#loop)
-                    .map_err(|e| call.problem_at("lag", e.to_string(), e.hint()))?,
-                _ => way,
-            };
-            paths.push(way);
+            paths.push(match &trail {
+                Some(trail) => trail.added(&way, rest),
+                None => way,
+            });
         }
         rigs.push((rig, paths));
         which.push(number);
@@ -457,6 +473,52 @@ fn frames(
     };
     let value = Clip { rate: time.rate, looped: options.r#loop, frames: (0..count).map(frame).collect() };
     Ok(Warned { value, warnings })
+}
+
+/// How a strand along the middle of a lock trails behind the head.
+struct Trail {
+    /// Its nodes at rest.
+    rest: Vec<Vec3>,
+    /// Per frame how far each is from there, as the head sees it.
+    frames: Vec<Vec<Vec3>>,
+}
+
+/// Nodes of the strand that shows how a lock trails.
+const NODES: usize = 24;
+
+impl Trail {
+    fn new(call: &Call, posed: &Posed, number: usize, motion: &HeadMotion, lag: &Lag, looped: bool) -> Result<Self> {
+        let head = posed.rest.head();
+        let rest = posed.middle(number, NODES);
+        let normal = (rest[1] - rest[0]).normalize_or(Vec3::Y);
+        let root = Root { id: number as u64, position: rest[0], normal, uv: Vec2::ZERO, triangle: 0 };
+        let mut strands = Strands::new();
+        strands.push(root, 0, rest.iter().copied());
+        let options = HairOptions { hold: lag.hold, drag: Some(lag.drag), ..HairOptions::default() };
+        let skin = super::dynamics::skin(call, head)?;
+        let body = Some(Body { solid: &head.solid, skin: &skin });
+        let hair = Hair { strands: &strands, options: &options, pinned: &[], body };
+        // Posed by hand, it is at rest as it is.
+        let how = SimulateOptions { duration: None, rate: None, balanced: true, r#loop: Some(looped) };
+        let made = simulate(&hair, &how, Some(&motion.clip), call.task())
+            .map_err(|e| call.problem_at("lag", e.to_string(), e.hint()))?;
+        let seen = |f: usize| {
+            let back = motion.clip.at(f).map_or(Affine3A::IDENTITY, |t| t.inverse());
+            let now = made.value.at(f).map_or(&[][..], |s| &s.points);
+            now.iter().zip(&rest).map(|(p, rest)| (back.transform_point3(*p) - *rest) * lag.amount).collect()
+        };
+        Ok(Self { frames: (0..motion.clip.count()).map(seen).collect(), rest })
+    }
+
+    /// A path with what the strand does near the place where the handle rests.
+    fn added(&self, way: &[Vec3], rest: Vec3) -> Vec<Vec3> {
+        let near = |a: &usize, b: &usize| {
+            self.rest[*a].distance_squared(rest).total_cmp(&self.rest[*b].distance_squared(rest))
+        };
+        let node = (0..self.rest.len()).min_by(near).unwrap_or(0);
+        let by = |f: usize| self.frames.get(f).and_then(|o| o.get(node)).copied().unwrap_or_default();
+        way.iter().enumerate().map(|(f, p)| *p + by(f)).collect()
+    }
 }
 
 /// An error of the method, about the field that it comes from.

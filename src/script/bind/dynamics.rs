@@ -65,7 +65,7 @@ fn parts(lock: &Lock) -> Vec<&Arc<Strands>> {
 }
 
 /// The grid of distances to a head, kept from run to run.
-fn skin(call: &Call, head: &Head) -> Result<Arc<Skin>> {
+pub fn skin(call: &Call, head: &Head) -> Result<Arc<Skin>> {
     let mut key = Digest::new("skin 1");
     key.key(head.key());
     call.memo(&key, || Ok(Warned { value: Skin::new(&head.solid), warnings: vec![] }))

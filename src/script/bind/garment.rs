@@ -1,6 +1,7 @@
 //! Garments: pieces and loaded meshes, their parts, tapes and girths.
 
 use std::io;
+use std::path::Path;
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -13,8 +14,8 @@ use super::lattice::failed;
 use super::overlay;
 use crate::deform::{self, Band, Bend, DeformError, Deformer, FitOptions, Lift, Measure, Taper, Target};
 use crate::garment::{self, DressOptions, FormOptions, Garment, ShirtOptions, SkirtOptions, Tape, TrousersOptions};
-use crate::geometry::Solid;
 use crate::geometry::slice::Side;
+use crate::geometry::{Mesh, Solid};
 use crate::head::Head;
 use crate::head::load::{self, Axis, FileBytes, LoadOptions, Unit};
 use crate::math::{Colour, Digest};
@@ -234,21 +235,27 @@ fn made<P: Params + std::fmt::Debug>(call: &Call, build: fn(&P) -> Garment) -> R
 
 fn load_file(call: &Call) -> Result<Value> {
     let (fields, extras) = call.read_both::<LoadFields, ClothLook>()?;
-    let path = call.session.options.folder().join(&fields.file);
+    let options = LoadOptions { unit: fields.unit, up: fields.up, forward: fields.forward, groups: fields.groups };
+    let mesh = read_mesh(call, &fields.file, &options, fields.at)?;
+    let stem =
+        Path::new(&fields.file).file_stem().map_or_else(|| "garment".into(), |s| s.to_string_lossy().into_owned());
+    let garment = Arc::new(Garment::new(&stem, mesh));
+    Ok(give(Cloth { garment, material: look(&extras), overlay: Arc::default(), source: call.source() }))
+}
+
+/// The mesh of a file named by the fields `file` and `groups` of a call, moved by `at`.
+pub fn read_mesh(call: &Call, file: &str, options: &LoadOptions, at: Vec3) -> Result<Mesh> {
+    let path = call.session.options.folder().join(file);
     let bytes = call.session.access.read(&path).map_err(|e| call.problem_at("file", e.to_string(), e.hint()))?;
     let folder = path.parent().map(ToOwned::to_owned).unwrap_or_default();
     let beside = |name: &str| call.session.access.read(&folder.join(name)).map_err(|e| io::Error::other(e.to_string()));
-    let options =
-        LoadOptions { unit: fields.unit, up: fields.up, forward: fields.forward, groups: fields.groups.clone() };
-    let loaded = load::load(&FileBytes { name: &fields.file, bytes: &bytes }, &options, &beside).map_err(|e| {
+    let loaded = load::load(&FileBytes { name: file, bytes: &bytes }, options, &beside).map_err(|e| {
         let field = if matches!(e, load::LoadError::UnknownGroup { .. }) { "groups" } else { "file" };
         call.problem_at(field, e.to_string(), e.hint())
     })?;
     let mut mesh = call.warned(loaded).mesh;
-    mesh.positions.iter_mut().for_each(|p| *p += fields.at);
-    let stem = path.file_stem().map_or_else(|| "garment".into(), |s| s.to_string_lossy().into_owned());
-    let garment = Arc::new(Garment::new(&stem, mesh));
-    Ok(give(Cloth { garment, material: look(&extras), overlay: Arc::default(), source: call.source() }))
+    mesh.positions.iter_mut().for_each(|p| *p += at);
+    Ok(mesh)
 }
 
 /// The tape of that name.

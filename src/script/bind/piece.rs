@@ -1,4 +1,4 @@
-//! Caps, buns and rings: stylised hair that is not a tuft.
+//! Caps, buns, rings and loaded meshes: stylised hair that is not a tuft.
 
 use std::sync::Arc;
 
@@ -6,10 +6,12 @@ use glam::Vec3;
 
 use super::super::call::{Call, Result};
 use super::super::registry::{Entry, Getter, Noun};
+use super::garment::read_mesh;
 use super::head::give;
 use super::tuft::{TuftLook, Wig, ground, head_of, points_of, tuft_error};
 use crate::geometry::Mesh;
 use crate::head::Head;
+use crate::head::load::{Axis, LoadOptions, Unit};
 use crate::math::Digest;
 use crate::params::{Object, Table, Value};
 use crate::scene::{LockKind, TuftMaterial};
@@ -35,7 +37,7 @@ impl Object for Piece {
 }
 
 crate::params! {
-    /// What else a cap or a bun takes.
+    /// What else a cap, a bun or a mesh takes.
     pub struct PieceExtras("coif.cap") {
         /// The head it belongs to; needed only when the script made several.
         head: Option<Arc<Head>>;
@@ -54,21 +56,41 @@ crate::params! {
     }
 }
 
-/// `coif.cap`, `coif.bun`, `coif.ring`.
+crate::params! {
+    /// Stylised hair from a file: OBJ, glTF or GLB. It stays where it is in the file, but for `at`. Several files of one
+    /// topology are the states of a lock that moves: `coif.animate { states = { rest, bent }, ... }`.
+    pub struct MeshFields("coif.mesh") {
+        /// The file, beside the script or below its folder.
+        file: String;
+        /// What one unit of the file is; metres for glTF, centimetres for OBJ when left out.
+        unit: Option<Unit>;
+        /// The axis of the file that points up; "y" when left out.
+        up: Option<Axis>;
+        /// The axis of the file that points to the front; "z", or "-y" when z is up.
+        forward: Option<Axis>;
+        /// Only these groups, objects or materials; everything when left out.
+        groups: Vec<String> = vec![];
+        /// How far it is moved.
+        at: Vec3 = Vec3::ZERO, unit("cm");
+    }
+}
+
+/// `coif.cap`, `coif.bun`, `coif.ring`, `coif.mesh`.
 pub fn functions() -> Vec<Entry> {
     vec![
         Entry::both::<CapOptions, PieceExtras>("coif.cap", "Piece", cap),
         Entry::both::<BunOptions, PieceExtras>("coif.bun", "Piece", bun),
         Entry::both::<RingOptions, RingExtras>("coif.ring", "Piece", ring),
+        Entry::both::<MeshFields, PieceExtras>("coif.mesh", "Piece", mesh),
     ]
 }
 
-/// A cap, a bun or a ring.
+/// A cap, a bun, a ring or a loaded mesh.
 pub fn noun() -> Noun {
     let getters = vec![
         Getter {
             name: "kind",
-            doc: "`cap`, `bun` or `ring`.",
+            doc: "`cap`, `bun`, `ring` or `mesh`.",
             returns: "string",
             get: |h| h.get::<Piece>().map_or(Value::Nil, |p| Value::Text(p.kind.text().to_owned())),
         },
@@ -79,10 +101,15 @@ pub fn noun() -> Noun {
             get: |h| h.get::<Piece>().map_or(Value::Nil, |p| Value::Number(p.mesh.triangles.len() as f64)),
         },
     ];
-    Noun::of::<Piece>("A cap, a bun or a ring of stylised hair.", super::deform::piece_methods(), getters, |h| {
-        h.get::<Piece>()
-            .map_or_else(String::new, |p| format!("{} of {} triangles", p.kind.text(), p.mesh.triangles.len()))
-    })
+    Noun::of::<Piece>(
+        "A cap, a bun, a ring or a loaded mesh of stylised hair.",
+        super::deform::piece_methods(),
+        getters,
+        |h| {
+            h.get::<Piece>()
+                .map_or_else(String::new, |p| format!("{} of {} triangles", p.kind.text(), p.mesh.triangles.len()))
+        },
+    )
 }
 
 /// The head that a call names or means.
@@ -137,6 +164,14 @@ fn bun(call: &Call) -> Result<Value> {
     let (options, extras) = call.read_both::<BunOptions, PieceExtras>()?;
     let mesh = options.build().map_err(|e| tuft_error(call, "position", &e))?;
     Ok(piece(call, LockKind::Bun, Arc::new(mesh), extras.head.unwrap_or(head), extras.material))
+}
+
+fn mesh(call: &Call) -> Result<Value> {
+    let head = head(call)?;
+    let (fields, extras) = call.read_both::<MeshFields, PieceExtras>()?;
+    let options = LoadOptions { unit: fields.unit, up: fields.up, forward: fields.forward, groups: fields.groups };
+    let mesh = read_mesh(call, &fields.file, &options, fields.at)?;
+    Ok(piece(call, LockKind::Mesh, Arc::new(mesh), extras.head.unwrap_or(head), extras.material))
 }
 
 fn ring(call: &Call) -> Result<Value> {

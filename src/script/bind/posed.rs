@@ -11,7 +11,7 @@ use super::clip::StillLocks;
 use super::piece::Piece;
 use super::tuft::Wig;
 use crate::animate::AnimateError;
-use crate::geometry::Mesh;
+use crate::geometry::{Mesh, curve};
 use crate::params::Value;
 use crate::scene::Locks;
 use crate::task::Warning;
@@ -179,6 +179,21 @@ impl Posed {
             warning.message = format!("lock {}: {}", number + 1, warning.message);
         }
         warning
+    }
+
+    /// So many places along the middle of a lock at rest, evenly: along its stroke; on a piece, which has none, from the
+    /// vertex nearest to the skin straight to the farthest one.
+    pub fn middle(&self, number: usize, count: usize) -> Vec<Vec3> {
+        let way: Vec<Vec3> = match &self.rest {
+            StillLocks::Tufts(wig) => wig.tufts.tufts[number].stroke.points().to_vec(),
+            StillLocks::Piece(piece) => {
+                let away = |p: &Vec3| piece.head.closest(*p).position.distance(*p);
+                let order = |a: &&Vec3, b: &&Vec3| away(a).total_cmp(&away(b));
+                let all = &piece.mesh.positions;
+                [all.iter().min_by(order), all.iter().max_by(order)].into_iter().flatten().copied().collect()
+            }
+        };
+        curve::resampled(&way, count)
     }
 
     fn place(&self, lock: &OneLock, vertex: u32) -> Option<Vec2> {
