@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::region::Area;
-use crate::deform::{Lattice, Pins, PointKind};
+use crate::deform::{Cage, Lattice, Pins, PointKind, Warp};
 use crate::dynamics::{Field, Force, Zone};
 use crate::geometry::slice::Outline;
 use crate::geometry::{OrientedBox, Root};
@@ -28,6 +28,8 @@ const TAPE: Colour = Colour::hex(0xb5_7a_00);
 const FORCE: Colour = Colour::hex(0x1f_7a_8c);
 /// Colour of what is pinned.
 const PIN: Colour = Colour::hex(0x2f_80_3b);
+/// Cages with more control points than this are drawn without their numbers.
+const MOST_NUMBERS: usize = 60;
 /// Length of arrows, cm.
 const ARROW: f32 = 4.0;
 
@@ -102,6 +104,46 @@ pub fn lattice(lattice: &Lattice) -> Overlay {
         out.markers.push(Marker { position, colour: kind_colour(lattice.kind(index)), label: String::new() });
     }
     held(lattice.held(), &mut out);
+    out
+}
+
+/// A cage as it stands: its edges, and its control points by kind with their names or numbers.
+pub fn cage(cage: &Cage) -> Overlay {
+    let mut out = Overlay::default();
+    for ring in cage.faces() {
+        for (k, &a) in ring.iter().enumerate() {
+            let b = ring[(k + 1) % ring.len()];
+            // Every edge is in two faces, once in each direction.
+            if a < b {
+                let points = vec![cage.place(a as usize), cage.place(b as usize)];
+                out.thin.push(Line { points, colour: GRID });
+            }
+        }
+    }
+    let is_told = cage.count() <= MOST_NUMBERS;
+    for index in 0..cage.count() {
+        let (position, colour) = (cage.place(index), kind_colour(cage.kind(index)));
+        let number = || if is_told { (index + 1).to_string() } else { String::new() };
+        let label = cage.name(index).map_or_else(number, ToOwned::to_owned);
+        if position != cage.rest(index) {
+            out.arrows.push(Arrow { from: cage.rest(index), to: position, colour });
+        }
+        out.markers.push(Marker { position, colour, label });
+    }
+    held(cage.held(), &mut out);
+    out
+}
+
+/// A warp: where its points go and where they came from.
+pub fn warp(warp: &Warp) -> Overlay {
+    let mut out = Overlay::default();
+    for &(from, to) in warp.pairs() {
+        let colour = kind_colour(if from == to { PointKind::Fixed } else { PointKind::Feature });
+        if from != to {
+            out.arrows.push(Arrow { from, to, colour });
+        }
+        out.markers.push(Marker { position: to, colour, label: String::new() });
+    }
     out
 }
 
