@@ -230,7 +230,16 @@ impl DeformError {
             Self::SamePlace { .. } => Some("leave one of them out, or move it".into()),
             Self::OntoFixed { .. } => Some("choose another target, or do not fix that point".into()),
             Self::Degenerate { .. } => Some("give four points or more that enclose space".into()),
-            Self::NotAround { .. } => Some("give some on every side: left, right, above, below, in front, behind".into()),
+            Self::OutOfRange { what, value, high, .. } if what == "the number of control points" => {
+                Some(if value > high {
+                    "a cage is coarse: give fewer points, or a simpler mesh".into()
+                } else {
+                    "give some on every side".into()
+                })
+            }
+            Self::NotAround { .. } => {
+                Some("give some on every side: left, right, above, below, in front, behind".into())
+            }
             Self::InTheMiddle { .. } => {
                 Some("a cage goes around what it moves: move the point outwards, or use `coif.pins`".into())
             }

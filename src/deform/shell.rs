@@ -172,7 +172,8 @@ pub fn around(places: &[Vec3], divisions: u32, margin: f32) -> Result<Faces, Def
         let q = (p - middle) / half;
         let size = q.abs().max_element();
         let axis = (0..3).find(|&a| q[a].abs() == size).unwrap_or(0);
-        let part = |a: usize| if size > 0.0 { ((q[a] / size + 1.0) * 0.5 * n as f32) as i32 } else { 0 }.clamp(0, n - 1);
+        let part =
+            |a: usize| if size > 0.0 { ((q[a] / size + 1.0) * 0.5 * n as f32) as i32 } else { 0 }.clamp(0, n - 1);
         let side = 2 * axis as i32 + i32::from(q[axis] > 0.0);
         let index = (side * n + part((axis + 1) % 3)) * n + part((axis + 2) % 3);
         (index as usize, size)

@@ -130,10 +130,7 @@ crate::params! {
 
 /// `coif.cage`, `coif.warp`.
 pub fn functions() -> Vec<Entry> {
-    vec![
-        Entry::table::<CageFields>("coif.cage", "Cage", cage),
-        Entry::table::<WarpFields>("coif.warp", "Warp", warp),
-    ]
+    vec![Entry::table::<CageFields>("coif.cage", "Cage", cage), Entry::table::<WarpFields>("coif.warp", "Warp", warp)]
 }
 
 /// Cages and warps.
@@ -184,8 +181,7 @@ fn cage(call: &Call) -> Result<Value> {
     if given[1] {
         let Some(places) = points_of(&fields.around) else {
             let (of, kind) = (&fields.around, fields.around.type_name());
-            let message =
-                format!("expected a Garment, Strands, Tufts, a Piece, a Head or a Box, got {kind} `{of}`");
+            let message = format!("expected a Garment, Strands, Tufts, a Piece, a Head or a Box, got {kind} `{of}`");
             return Err(call.problem_at("around", message, None));
         };
         let made = Cage::around(&places, fields.divisions, fields.margin);
@@ -330,7 +326,9 @@ fn move_points(call: &Call) -> Result<Value> {
     let (Some(scale), Some(by)) = (scale, by) else { return Err(call.problems(reader.problems())) };
     let how = Move { by, scale, turn: Quat::from_axis_angle(fields.axis.0, fields.turn.radians), about: fields.about };
     let mut cage = Cage::clone(&this).moved(&points, &how).map_err(|e| failed(call, "", &e))?;
-    for (i, by) in points.iter().zip(asked.into_iter().flatten()).filter(|(i, _)| this.kind(**i as usize) != PointKind::Fixed) {
+    for (i, by) in
+        points.iter().zip(asked.into_iter().flatten()).filter(|(i, _)| this.kind(**i as usize) != PointKind::Fixed)
+    {
         cage = cage.placed(&[*i], |_, p| p + by).map_err(|e| failed(call, "by", &e))?;
     }
     Ok(give(cage))

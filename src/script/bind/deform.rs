@@ -14,7 +14,7 @@ use super::overlay;
 use super::piece::Piece;
 use super::strands::Lock;
 use super::tuft::{Wig, settled as settled_tufts, tuft_error};
-use crate::deform::{self, Bend, Cage, DeformError, Deformer, Hold, Lattice, Lift, Pins, Taper, Warp};
+use crate::deform::{self, Bend, Cage, DeformError, Deformer, Folded, Hold, Lattice, Lift, Pins, Taper, Warp};
 use crate::geometry::Strands;
 use crate::groom::{Body, keep_out};
 use crate::head::Head;
@@ -176,7 +176,9 @@ pub fn moving_locks_methods() -> Vec<Entry> {
 pub fn deformers<V: Verb>(call: &Call, verb: &V, points: &[Vec3]) -> Result<Vec<Deformer>> {
     let by = verb.deformers(points).map_err(|e| failed(call, "", &e))?;
     if verb.is_by_hand() {
-        by.iter().enumerate().for_each(|(i, by)| folded(call, i, by));
+        for (i, one) in by.iter().enumerate() {
+            folded(call, (by.len() > 1).then_some(i + 1), one);
+        }
         // Later ones act on what the first has moved.
         if let Some(Deformer::Cage(cage)) = by.first() {
             torn(call, cage, points);
@@ -185,15 +187,16 @@ pub fn deformers<V: Verb>(call: &Call, verb: &V, points: &[Vec3]) -> Result<Vec<
     Ok(by)
 }
 
-/// Warns of what folds over itself.
-fn folded(call: &Call, index: usize, by: &Deformer) {
-    let of = |points: &[String], place: Vec3| {
-        let place = format!("({:.1}, {:.1}, {:.1})", place.x, place.y, place.z);
-        format!("number {} folds over itself near {place}, by {}", index + 1, points.join(", "))
+/// Warns of what folds over itself; `number` tells several deformers apart.
+fn folded(call: &Call, number: Option<usize>, by: &Deformer) {
+    let of = |what: &str, found: Folded| {
+        let what = number.map_or_else(|| format!("the {what}"), |n| format!("number {n}, a {what},"));
+        let Vec3 { x, y, z } = found.place;
+        format!("{what} folds over itself near ({x:.1}, {y:.1}, {z:.1}), at {}", found.points.join(", "))
     };
     let message = match by {
-        Deformer::Lattice(lattice) => lattice.folded().map(|f| format!("lattice {}", of(&f.points, f.place))),
-        Deformer::Cage(cage) => cage.folded().map(|f| format!("cage {}", of(&f.points, f.place))),
+        Deformer::Lattice(lattice) => lattice.folded().map(|f| of("lattice", f)),
+        Deformer::Cage(cage) => cage.folded().map(|f| of("cage", f)),
         Deformer::Pins(_) | Deformer::Warp(_) => None,
     };
     if let Some(message) = message {

@@ -12,7 +12,7 @@ use crate::geometry::{OrientedBox, Root};
 use crate::groom::{Domain, Queue};
 use crate::math::Colour;
 use crate::render::overlay::stage_colour;
-use crate::scene::{Arrow, Line, Marker, Overlay, WireBox, WireSphere};
+use crate::scene::{Arrow, Line, Marker, Note, Overlay, WireBox, WireSphere};
 
 /// Colour of partings.
 const PARTING: Colour = Colour::hex(0xe0_3c_31);
@@ -209,6 +209,13 @@ pub fn tape(name: &str, outline: &Outline) -> Overlay {
         markers: vec![Marker { position: right, colour: TAPE, label }],
         ..Overlay::default()
     }
+}
+
+/// What a tape reads, beside it.
+pub fn reading(name: &str, outline: &Outline) -> Note {
+    let height = outline.points.first().map_or(0.0, |p| p.y);
+    let points = outline.hull().iter().map(|p| Vec3::new(p.x, height, p.y)).collect();
+    Note { points, text: format!("{name} {:.1} cm", outline.tape()), colour: TAPE }
 }
 
 /// Shrinks boxes that reach far beyond everything that is drawn: their sides would lie outside of every view.
