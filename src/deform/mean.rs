@@ -310,14 +310,14 @@ macro_rules! operators {
             #[inline(always)]
             fn $method(mut self, other: Self) -> Self {
                 for c in 0..LANES {
-                    self.0[c] = self.0[c] $op other.0[c];
+                    self.0[c] $op other.0[c];
                 }
                 self
             }
         }
     )*};
 }
-operators!(Add add +, Sub sub -, Mul mul *, Div div /);
+operators!(Add add +=, Sub sub -=, Mul mul *=, Div div /=);
 
 impl Lanes {
     #[inline(always)]
