@@ -166,7 +166,7 @@ impl Grid {
 
 /// What stands in the way of light: optical depth per cm of path.
 ///
-/// Skin is shaded by hair alone, and by a finer map of the head ([`Depths`]): the cells are too coarse for a nose.
+/// Skin is shaded by hair alone, and by a finer map of the head (`Depths`): the cells are too coarse for a nose.
 #[derive(Clone, Debug)]
 pub struct Density {
     /// Strands: their cross-section.
