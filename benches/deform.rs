@@ -1,6 +1,6 @@
-//! Lattices and pins over a million vertices, beside copying the same bytes. `cargo bench --bench deform`.
+//! Lattices, cages, pins and warps over a million vertices, beside copying the same bytes. `cargo bench --bench deform`.
 
-use coif::deform::{Lattice, Pins, Warp};
+use coif::deform::{Cage, Lattice, Pins, Warp};
 use coif::geometry::Bounds;
 use coif::math::rng::Key;
 use coif::task::Task;
@@ -75,6 +75,21 @@ fn pins_with_8_fixed_and_3_operated_points(bencher: Bencher) {
 #[divan::bench]
 fn pins_with_8_fixed_points_and_exponent_2_5(bencher: Bencher) {
     bench_pins(bencher, 2.5, 1);
+}
+
+/// Scattered control points, all of them moved: mean-value coordinates of every vertex.
+#[divan::bench(args = [12, 60], sample_count = 20)]
+fn cage_of_scattered_points(bencher: Bencher, count: u64) {
+    let points = points();
+    let key = Key::new(6, "bench");
+    let scattered = (0..count).map(|i| (None, key.with(i).direction() * 30.0)).collect();
+    let cage = Cage::through(scattered).expect("points all around");
+    let all: Vec<u32> = (0..cage.count() as u32).collect();
+    let cage = cage.placed(&all, |i, p| p + key.with(u64::from(i) + 500).gaussian3()).expect("free points");
+    let mut out = points.clone();
+    bencher.counter(ItemsCount::new(POINTS)).bench_local(|| {
+        cage.apply(black_box(&points), &mut out, &Task::new()).expect("not cancelled");
+    });
 }
 
 #[divan::bench]

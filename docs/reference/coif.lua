@@ -705,6 +705,45 @@ function coif.lattice(fields) end
 ---@return coif.Pins
 function coif.pins(fields) end
 
+---Four control points or more, at most 500, on all sides of their middle.
+---@class (exact) coif.cage.points
+---@field at coif.Point # Where it is. [cm]
+---@field to? coif.Point # Where it goes. [cm]
+---@field name? string # A name, to move it by.
+---@field kind? "overall"|"feature"|"fixed" # What it is for; `feature` with a target and `overall` without one when left out.
+
+---What `coif.cage` takes.
+---@class (exact) coif.cage.fields
+---@field [integer] coif.cage.points # Four control points or more, at most 500, on all sides of their middle.
+---@field around? coif.Garment|coif.Strands|coif.Tufts|coif.Piece|coif.Head|coif.Box|nil # Instead: what a cage is made around. It is a box with divided sides that is drawn in to it.
+---@field divisions? number # Of a cage that is made around something: into how many pieces each edge of the box is divided. [whole; 1 to 8; default 2]
+---@field margin? number # Of a cage that is made around something: how far off it is. [cm; 0 to 100; default 1]
+---@field mesh? coif.Garment # Instead: a closed mesh of at most 500 vertices, as loaded with `coif.garment.load`.
+
+---A cage of scattered control points, without a grid: what is inside follows them, what is outside stays. The
+---points are given (`{ at = place, to = place, name = "chin" }`, on all sides of what moves), or made around
+---something, or they are the vertices of a closed mesh.
+---@param fields? coif.cage.fields
+---@return coif.Cage
+function coif.cage(fields) end
+
+---Four points or more that do not lie in a plane, as of `coif.pins`.
+---@class (exact) coif.warp.points
+---@field at coif.Point # Where it is. [cm]
+---@field to? coif.Point # Where it goes. [cm]
+---@field name? string # A name, to mark it by later.
+---@field kind? "overall"|"feature"|"fixed" # What it is for; `feature` with a target and `fixed` without one when left out. Any other kind without a target rides along.
+
+---What `coif.warp` takes.
+---@class (exact) coif.warp.fields
+---@field [integer] coif.warp.points # Four points or more that do not lie in a plane, as of `coif.pins`.
+
+---A smooth motion of all space through scattered points: a point with a target goes there, one without stays. It
+---has no border, and far away it goes on; so give points that stay on the other side too.
+---@param fields coif.warp.fields
+---@return coif.Warp
+function coif.warp(fields) end
+
 ---What `coif.garment.skirt` takes.
 ---@class (exact) coif.garment.skirt.fields
 ---@field waist? number # Girth of the waistband. [cm; 30 to 200; default 57]
@@ -949,9 +988,9 @@ function Head:motion(fields) end
 
 ---What `Head:deform` takes.
 ---@class (exact) coif.Head.deform.fields
----@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+---@field [integer] coif.Lattice|coif.Cage|coif.Pins|coif.Warp # Lattices, cages, pins and warps, in the order they act.
 
----Moves it by lattices and pins, one after the other.
+---Moves it by lattices, cages, pins and warps, one after the other.
 ---@param fields coif.Head.deform.fields
 ---@return coif.Head
 function Head:deform(fields) end
@@ -1144,12 +1183,12 @@ function Strands:stats() end
 
 ---What `Strands:deform` takes.
 ---@class (exact) coif.Strands.deform.fields
----@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+---@field [integer] coif.Lattice|coif.Cage|coif.Pins|coif.Warp # Lattices, cages, pins and warps, in the order they act.
 ---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
 ---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
 ---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
 
----Moves it by lattices and pins, one after the other.
+---Moves it by lattices, cages, pins and warps, one after the other.
 ---@param fields coif.Strands.deform.fields
 ---@return coif.Strands
 function Strands:deform(fields) end
@@ -1325,12 +1364,12 @@ function StrandsClip:stats() end
 
 ---What `StrandsClip:deform` takes.
 ---@class (exact) coif.StrandsClip.deform.fields
----@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+---@field [integer] coif.Lattice|coif.Cage|coif.Pins|coif.Warp # Lattices, cages, pins and warps, in the order they act.
 ---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
 ---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
 ---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
 
----Moves it by lattices and pins, one after the other.
+---Moves it by lattices, cages, pins and warps, one after the other.
 ---@param fields coif.StrandsClip.deform.fields
 ---@return coif.StrandsClip
 function StrandsClip:deform(fields) end
@@ -1380,6 +1419,16 @@ function StrandsClip:taper(fields) end
 ---@return coif.StrandsClip
 function StrandsClip:lift(fields) end
 
+---What `StrandsClip:carry` takes.
+---@class (exact) coif.StrandsClip.carry.fields
+---@field to coif.Head # The other head.
+
+---Carries it to another head: the smooth motion through the landmarks of both heads moves every point, roots are
+---laid on the new skin, and what then lies in the new head is moved out.
+---@param fields coif.StrandsClip.carry.fields
+---@return coif.StrandsClip
+function StrandsClip:carry(fields) end
+
 ---Stylised hair in motion: frames of its surface at equal distances in time.
 ---@class coif.LocksClip
 ---@field frames number # How many frames.
@@ -1390,9 +1439,9 @@ local LocksClip = {}
 
 ---What `LocksClip:deform` takes.
 ---@class (exact) coif.LocksClip.deform.fields
----@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+---@field [integer] coif.Lattice|coif.Cage|coif.Pins|coif.Warp # Lattices, cages, pins and warps, in the order they act.
 
----Moves it by lattices and pins, one after the other.
+---Moves it by lattices, cages, pins and warps, one after the other.
 ---@param fields coif.LocksClip.deform.fields
 ---@return coif.LocksClip
 function LocksClip:deform(fields) end
@@ -1432,6 +1481,16 @@ function LocksClip:taper(fields) end
 ---@param fields coif.LocksClip.lift.fields
 ---@return coif.LocksClip
 function LocksClip:lift(fields) end
+
+---What `LocksClip:carry` takes.
+---@class (exact) coif.LocksClip.carry.fields
+---@field to coif.Head # The other head.
+
+---Carries it to another head: the smooth motion through the landmarks of both heads moves every point, roots are
+---laid on the new skin, and what then lies in the new head is moved out.
+---@param fields coif.LocksClip.carry.fields
+---@return coif.LocksClip
+function LocksClip:carry(fields) end
 
 ---A motion of the head; made by `Head:motion`.
 ---@class coif.Motion
@@ -1523,12 +1582,12 @@ function Tufts:stats() end
 
 ---What `Tufts:deform` takes.
 ---@class (exact) coif.Tufts.deform.fields
----@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+---@field [integer] coif.Lattice|coif.Cage|coif.Pins|coif.Warp # Lattices, cages, pins and warps, in the order they act.
 ---@field roots? number # Length along each strand, from its root, over which the motion comes in: roots stay on the head. With 0 they move as well. [cm; 0 to 100; default 3]
 ---@field where? fun(root: vector): boolean # Which of it: a function that takes a root (a vector) and returns true or false.
 ---@field margin? number # How far strands are kept from the skin. [cm; 0 to 2; default 0.1]
 
----Moves it by lattices and pins, one after the other.
+---Moves it by lattices, cages, pins and warps, one after the other.
 ---@param fields coif.Tufts.deform.fields
 ---@return coif.Tufts
 function Tufts:deform(fields) end
@@ -1605,9 +1664,9 @@ local Piece = {}
 
 ---What `Piece:deform` takes.
 ---@class (exact) coif.Piece.deform.fields
----@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+---@field [integer] coif.Lattice|coif.Cage|coif.Pins|coif.Warp # Lattices, cages, pins and warps, in the order they act.
 
----Moves it by lattices and pins, one after the other.
+---Moves it by lattices, cages, pins and warps, one after the other.
 ---@param fields coif.Piece.deform.fields
 ---@return coif.Piece
 function Piece:deform(fields) end
@@ -1841,6 +1900,70 @@ function Pins:settled() end
 ---@return coif.Pins
 function Pins:mark(fields) end
 
+---A closed surface of scattered control points; what is inside follows them, what is outside stays.
+---@class coif.Cage
+---@field count number # How many control points.
+local Cage = {}
+
+---What `Cage:move` takes.
+---@class (exact) coif.Cage.move.fields
+---@field points? string|number|(string|number)[]|nil # Which, by name or by number from 1: one, or a list.
+---@field near? coif.Point # Those near this place; without `within` the nearest one alone. [cm]
+---@field within? number # How near. [cm; 0 to 1000]
+---@field where? fun(place: vector, number: number): boolean # Those for which a function returns true: it is told where a point stands, and its number.
+---@field by? coif.Point|fun(place: vector, number: number): vector # How far; or a function that is told where a point stands and its number, and returns how far.
+---@field scale? number|coif.Point|nil # Stretch along the axes of space: one number for all, or three.
+---@field turn? number # Turn about `axis`. [degrees; -360 to 360; default 0]
+---@field axis? coif.Direction # The axis of the turn. [default { 0, 1, 0 }]
+---@field about? coif.Point # The place that scaling and turning leave where it is; the middle of the points when left out. [cm]
+
+---Moves control points: scales and turns them about a place, then shifts them. Without `points`, `near` or `where`
+---all of them; fixed ones stay.
+---@param fields? coif.Cage.move.fields
+---@return coif.Cage
+function Cage:move(fields) end
+
+---What `Cage:mark` takes.
+---@class (exact) coif.Cage.mark.fields
+---@field kind "overall"|"feature"|"fixed" # The kind.
+---@field points? string|number|(string|number)[]|nil # Which, by name or by number from 1: one, or a list.
+---@field near? coif.Point # Those near this place; without `within` the nearest one alone. [cm]
+---@field within? number # How near. [cm; 0 to 1000]
+---@field where? fun(place: vector, number: number): boolean # Those for which a function returns true: it is told where a point stands, and its number.
+
+---Says what control points are for: `overall`, `feature` or `fixed`. It may change between steps.
+---@param fields coif.Cage.mark.fields
+---@return coif.Cage
+function Cage:mark(fields) end
+
+---What `Cage:hold` takes.
+---@class (exact) coif.Cage.hold.fields
+---@field [integer] coif.Point # The places. [cm]
+---@field power? number # How sharply the hold falls off: the exponent of the affinity. [0.5 to 8; default 2]
+
+---Holds places of the object itself: what is near them moves less, and they do not move at all.
+---@param fields coif.Cage.hold.fields
+---@return coif.Cage
+function Cage:hold(fields) end
+
+---What `Cage:follow` takes.
+---@class (exact) coif.Cage.follow.fields
+---@field power? number # The exponent of the affinity. [0.5 to 8; default 2]
+
+---Lets overall control points follow the feature points that were moved, held back by the fixed ones.
+---@param fields? coif.Cage.follow.fields
+---@return coif.Cage
+function Cage:follow(fields) end
+
+---Where a control point stands.
+---@param point string|number # Its name, or its number from 1.
+---@return vector
+function Cage:place(point) end
+
+---A smooth motion of all space through scattered points.
+---@class coif.Warp
+local Warp = {}
+
 ---A garment: a surface in named parts, with tapes around it.
 ---@class coif.Garment
 ---@field kind string # `skirt`, `dress`, `shirt`, `trousers`, `form`, or the name of its file.
@@ -1907,9 +2030,9 @@ function Garment:clear(fields) end
 
 ---What `Garment:deform` takes.
 ---@class (exact) coif.Garment.deform.fields
----@field [integer] coif.Lattice|coif.Pins # Lattices and pins, in the order they act.
+---@field [integer] coif.Lattice|coif.Cage|coif.Pins|coif.Warp # Lattices, cages, pins and warps, in the order they act.
 
----Moves it by lattices and pins, one after the other.
+---Moves it by lattices, cages, pins and warps, one after the other.
 ---@param fields coif.Garment.deform.fields
 ---@return coif.Garment
 function Garment:deform(fields) end
@@ -1960,6 +2083,7 @@ function Garment:shifted(by) end
 ---@field tape string # The name of a tape.
 ---@field width? number # Its width. [cm; 0.2 to 20; default 1.6]
 ---@field colour? coif.Colour # Its colour. [default "#f2c12e"]
+---@field label? boolean # Whether pictures say beside it what it reads. [default true]
 
 ---A measuring tape laid around it, as a thing to be seen.
 ---@param fields coif.Garment.ribbon.fields

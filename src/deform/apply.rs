@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Quat, Vec3};
 use rayon::prelude::*;
 
-use super::{DeformError, Lattice, Pins, Warp};
+use super::{Cage, DeformError, Lattice, Pins, Warp};
 use crate::geometry::{Mesh, Strands};
 use crate::math::{Digest, trig};
 use crate::task::Task;
@@ -15,6 +15,8 @@ use crate::task::Task;
 pub enum Deformer {
     /// A grid of control points.
     Lattice(Arc<Lattice>),
+    /// A closed surface of control points.
+    Cage(Arc<Cage>),
     /// Fixed and operated points.
     Pins(Arc<Pins>),
     /// A smooth motion through pairs of places.
@@ -29,6 +31,7 @@ impl Deformer {
     pub fn apply(&self, points: &[Vec3], out: &mut [Vec3], task: &Task) -> Result<(), DeformError> {
         match self {
             Self::Lattice(lattice) => lattice.apply(points, out, task),
+            Self::Cage(cage) => cage.apply(points, out, task),
             Self::Pins(pins) => pins.apply(points, out, task),
             Self::Warp(warp) => warp.apply(points, out, task),
         }
@@ -38,6 +41,7 @@ impl Deformer {
     pub fn digest(&self, into: &mut Digest) {
         match self {
             Self::Lattice(lattice) => lattice.digest(into),
+            Self::Cage(cage) => cage.digest(into),
             Self::Pins(pins) => pins.digest(into),
             Self::Warp(warp) => warp.digest(into),
         }

@@ -106,6 +106,68 @@ pub enum DeformError {
         /// How many there are.
         count: usize,
     },
+    /// Scattered control points that leave a side of their middle open.
+    #[error("the control points do not lie around their middle `{middle}`")]
+    NotAround {
+        /// Their middle, cm.
+        middle: Vec3,
+    },
+    /// A control point in the middle of the others.
+    #[error("{which} lies in the middle of all of them, at `{place}`")]
+    InTheMiddle {
+        /// "control point 3", a name.
+        which: String,
+        /// Where, cm.
+        place: Vec3,
+    },
+    /// Two control points in one direction from the middle.
+    #[error("{first} and {second} lie in the same direction from the middle `{middle}`")]
+    SameDirection {
+        /// "control point 1", a name.
+        first: String,
+        /// "control point 2", a name.
+        second: String,
+        /// The middle, cm.
+        middle: Vec3,
+    },
+    /// Two control points with one name.
+    #[error("{first} and {second} are both called `{name}`")]
+    SameName {
+        /// "point 1".
+        first: String,
+        /// "point 2".
+        second: String,
+        /// The name.
+        name: String,
+    },
+    /// A cage that is no closed surface.
+    #[error("the cage is not closed: its edge from {from} to {to} borders {count} triangles, not two")]
+    Open {
+        /// One end of the edge, cm.
+        from: Vec3,
+        /// The other end, cm.
+        to: Vec3,
+        /// How many triangles there are.
+        count: usize,
+    },
+    /// Neighbouring triangles of a cage that face different ways.
+    #[error("the triangles of the cage on both sides of the edge from {from} to {to} face different ways")]
+    WrongWay {
+        /// One end of the edge, cm.
+        from: Vec3,
+        /// The other end, cm.
+        to: Vec3,
+    },
+    /// A triangle of a cage that has no area.
+    #[error("the cage has a triangle without an area, from {a} to {b} and {c}")]
+    NoArea {
+        /// A corner, cm.
+        a: Vec3,
+        /// A corner, cm.
+        b: Vec3,
+        /// A corner, cm.
+        c: Vec3,
+    },
     /// No surface at the height of a tape.
     #[error("there is nothing to measure at the height `{height:.2}` cm: it goes from {low:.2} to {high:.2} cm")]
     NoCut {
@@ -168,6 +230,25 @@ impl DeformError {
             Self::SamePlace { .. } => Some("leave one of them out, or move it".into()),
             Self::OntoFixed { .. } => Some("choose another target, or do not fix that point".into()),
             Self::Degenerate { .. } => Some("give four points or more that enclose space".into()),
+            Self::OutOfRange { what, value, high, .. } if what == "the number of control points" => {
+                Some(if value > high {
+                    "a cage is coarse: give fewer points, or a simpler mesh".into()
+                } else {
+                    "give some on every side".into()
+                })
+            }
+            Self::NotAround { .. } => {
+                Some("give some on every side: left, right, above, below, in front, behind".into())
+            }
+            Self::InTheMiddle { .. } => {
+                Some("a cage goes around what it moves: move the point outwards, or use `coif.pins`".into())
+            }
+            Self::SameDirection { .. } => Some("leave one of them out, or move it sideways".into()),
+            Self::SameName { .. } => Some("give each its own name".into()),
+            Self::Open { count: 1, .. } => Some("close the hole there, in the program that the mesh is from".into()),
+            Self::Open { .. } => Some("a cage is one surface: take away what meets there beside it".into()),
+            Self::WrongWay { .. } => Some("turn all faces outwards, in the program that the mesh is from".into()),
+            Self::NoArea { .. } => Some("take it away, in the program that the mesh is from".into()),
             Self::OutOfReach { .. } => {
                 Some("choose a girth between these, let go of held points, or widen the band with `reach`".into())
             }

@@ -16,6 +16,8 @@ type Lanes = [f32; LANES];
 /// Places of that many points: x, y, z.
 type Places = [Lanes; 3];
 
+/// Blocks of lanes that go through one step after the other; what is between the steps stays in the nearest cache.
+const BLOCKS: usize = 32;
 const ZERO: Lanes = [0.0; LANES];
 
 /// A lattice, ready for evaluation.
@@ -27,6 +29,8 @@ pub struct Grid {
     moves: Vec<Vec3>,
     /// For every (i, j) whether any of its control points has moved.
     is_moved: Vec<bool>,
+    /// Along every axis.
+    binomials: [Vec<f32>; 3],
 }
 
 impl Grid {
@@ -34,7 +38,14 @@ impl Grid {
     pub fn new(origin: Vec3, inverse: &DMat3, divisions: [usize; 3], moves: &[Vec3]) -> Self {
         let rows = [0, 1, 2].map(|a| inverse.row(a).as_vec3());
         let is_moved = moves.chunks(divisions[2] + 1).map(|row| row.iter().any(|&m| m != Vec3::ZERO)).collect();
-        Self { origin, rows, divisions, moves: moves.to_vec(), is_moved }
+        let binomials = divisions.map(|n| {
+            let mut row = vec![1.0_f64];
+            for k in 0..n {
+                row.push(row[k] * (n - k) as f64 / (k + 1) as f64);
+            }
+            row.into_iter().map(|b| b as f32).collect()
+        });
+        Self { origin, rows, divisions, moves: moves.to_vec(), is_moved, binomials }
     }
 }
 
@@ -74,31 +85,52 @@ pub struct Radial {
     pub base: Vec3,
 }
 
-/// Moves `from` to `to` by a lattice.
-#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+/// Moves `from` to `to` by a lattice: in three steps, since a compiler that sees them as one lays their numbers side by
+/// side in a way that costs more than the sums.
 pub fn lattice(grid: &Grid, from: &[Vec3], to: &mut [Vec3]) {
-    let [l, m, n] = grid.divisions;
-    let mut basis = [vec![ZERO; l + 1], vec![ZERO; m + 1], vec![ZERO; n + 1]];
-    for (from, to) in from.chunks(LANES).zip(to.chunks_mut(LANES)) {
+    let (mut local, mut motion) = (vec![[ZERO; 3]; BLOCKS], vec![[ZERO; 3]; BLOCKS]);
+    for (from, to) in from.chunks(BLOCKS * LANES).zip(to.chunks_mut(BLOCKS * LANES)) {
+        let blocks = from.len().div_ceil(LANES);
+        to_local(grid, from, &mut local[..blocks]);
+        evaluate(grid, &local[..blocks], &mut motion[..blocks]);
+        displace(from, &motion[..blocks], to);
+    }
+}
+
+/// Local coordinates (2)-(4).
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn to_local(grid: &Grid, from: &[Vec3], local: &mut [Places]) {
+    for (from, local) in from.chunks(LANES).zip(local) {
         let places = load(from);
         let from_corner =
             [less(places[0], grid.origin.x), less(places[1], grid.origin.y), less(places[2], grid.origin.z)];
-        let local = [dot(&from_corner, grid.rows[0]), dot(&from_corner, grid.rows[1]), dot(&from_corner, grid.rows[2])];
+        for a in 0..3 {
+            local[a] = dot(&from_corner, grid.rows[a]);
+        }
+    }
+}
+
+/// The motion at local coordinates; none outside.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn evaluate(grid: &Grid, local: &[Places], motion: &mut [Places]) {
+    let [l, m, n] = grid.divisions;
+    let mut basis = [vec![ZERO; l + 1], vec![ZERO; m + 1], vec![ZERO; n + 1]];
+    for (local, motion) in local.iter().zip(motion) {
         // How far inside: negative outside.
         let mut depth = [1.0; LANES];
-        for local in &local {
+        for local in local {
             for c in 0..LANES {
                 depth[c] = f32::min(depth[c], f32::min(local[c], 1.0 - local[c]));
             }
         }
         if !depth.iter().any(|&d| d >= 0.0) {
-            to.copy_from_slice(from);
+            *motion = [ZERO; 3];
             continue;
         }
-        for (basis, local) in basis.iter_mut().zip(&local) {
-            bernstein(local, basis);
+        for a in 0..3 {
+            bernstein(&local[a], &grid.binomials[a], &mut basis[a]);
         }
-        let motion = match n {
+        *motion = match n {
             1 => contract::<2>(grid, &basis),
             2 => contract::<3>(grid, &basis),
             3 => contract::<4>(grid, &basis),
@@ -107,7 +139,23 @@ pub fn lattice(grid: &Grid, from: &[Vec3], to: &mut [Vec3]) {
             6 => contract::<7>(grid, &basis),
             _ => contract_any(grid, &basis),
         };
-        store(from, &motion, &depth, to);
+        for motion in motion {
+            for c in 0..LANES {
+                motion[c] = if depth[c] >= 0.0 { motion[c] } else { 0.0 };
+            }
+        }
+    }
+}
+
+/// Writes places moved by `motion`; a point that does not move keeps its bits.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn displace(from: &[Vec3], motion: &[Places], to: &mut [Vec3]) {
+    for ((from, motion), to) in from.chunks(LANES).zip(motion).zip(to.chunks_mut(LANES)) {
+        for (c, (p, q)) in from.iter().zip(to).enumerate() {
+            // Adding -0 keeps the sign of a 0.
+            let by = |a: usize| if motion[a][c] == 0.0 { -0.0 } else { motion[a][c] };
+            *q = *p + Vec3::new(by(0), by(1), by(2));
+        }
     }
 }
 
@@ -328,20 +376,23 @@ fn scaled(mut a: Lanes, by: f32) -> Lanes {
     a
 }
 
-/// All Bernstein polynomials of degree `basis.len() - 1`, by their recurrence.
+/// All Bernstein polynomials of degree `basis.len() - 1`.
 #[inline(always)]
-fn bernstein(at: &Lanes, basis: &mut [Lanes]) {
-    basis[0] = [1.0; LANES];
-    for degree in 1..basis.len() {
-        let mut saved = ZERO;
-        for b in &mut basis[..degree] {
-            for c in 0..LANES {
-                let value = b[c];
-                b[c] = saved[c] + (1.0 - at[c]) * value;
-                saved[c] = at[c] * value;
-            }
+fn bernstein(at: &Lanes, binomials: &[f32], basis: &mut [Lanes]) {
+    let last = basis.len() - 1;
+    // Powers of what is left, from the last one down.
+    basis[last] = [1.0; LANES];
+    for k in (0..last).rev() {
+        for c in 0..LANES {
+            basis[k][c] = basis[k + 1][c] * (1.0 - at[c]);
         }
-        basis[degree] = saved;
+    }
+    let mut power = *at;
+    for k in 1..=last {
+        for c in 0..LANES {
+            basis[k][c] *= power[c] * binomials[k];
+            power[c] *= at[c];
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use glam::{DMat3, DVec3, Mat3, Vec3};
 use rayon::prelude::*;
 
 use super::kernel::{self, Grid, Limit};
-use super::{DeformError, PointKind};
+use super::{DeformError, Folded, PointKind};
 use crate::geometry::Bounds;
 use crate::math::Digest;
 use crate::task::Task;
@@ -62,6 +62,17 @@ pub struct Move {
 impl Default for Move {
     fn default() -> Self {
         Self { by: Vec3::ZERO, scale: Vec3::ONE, turn: glam::Quat::IDENTITY, about: None }
+    }
+}
+
+impl Move {
+    /// Where a point goes that stands at `p`, with the middle of all that move.
+    pub fn of(&self, p: Vec3, middle: Vec3) -> Vec3 {
+        if *self == Self::default() {
+            return p;
+        }
+        let about = self.about.unwrap_or(middle);
+        about + self.turn * ((p - about) * self.scale) + self.by
     }
 }
 
@@ -240,11 +251,7 @@ impl Lattice {
     pub fn moved(self, points: &[u32], by: &Move) -> Result<Self, DeformError> {
         let free: Vec<u32> = points.iter().copied().filter(|&i| self.is_free(i)).collect();
         let middle = free.iter().map(|&i| self.place(i as usize)).sum::<Vec3>() / free.len().max(1) as f32;
-        let about = by.about.unwrap_or(middle);
-        self.placed(
-            points,
-            |_, p| if *by == Move::default() { p } else { about + by.turn * ((p - about) * by.scale) + by.by },
-        )
+        self.placed(points, |_, p| by.of(p, middle))
     }
 
     /// With these control points where `place` puts them; it is told the number and where the point stands.
@@ -315,6 +322,50 @@ impl Lattice {
         self.placed(&free, |_, p| pins.at(p))
     }
 
+    /// The place where the moved lattice is most folded over itself: where its Jacobian is least, when that is not above 0.
+    /// Looked for at every control point and between neighbours; in lattices of many points at fewer places.
+    pub fn folded(&self) -> Option<Folded> {
+        if self.is_still() {
+            return None;
+        }
+        let most = libm::cbrt(1e7 / self.count() as f64) as usize;
+        let samples = self.divisions.map(|d| (2 * d + 1).min(most.max(5)));
+        // Per axis and sample the basis and its slope.
+        let tables = [0, 1, 2].map(|a| table(self.divisions[a], samples[a]));
+        let (inverse, edges) = (self.inverse(), [0, 1, 2].map(|a| self.edges.col(a).as_dvec3()));
+        let [_, m, n] = self.divisions.map(|d| d + 1);
+        let mut least = (0.0, [0; 3]);
+        for q in (0..samples[0] * samples[1] * samples[2])
+            .map(|i| [i / (samples[1] * samples[2]), i / samples[2] % samples[1], i % samples[2]])
+        {
+            let [a, b, c] = [0, 1, 2].map(|axis| &tables[axis][q[axis]]);
+            let mut slopes = edges;
+            for (i, a) in a.iter().enumerate() {
+                for (j, b) in b.iter().enumerate() {
+                    let row = &self.moves[(i * m + j) * n..][..n];
+                    let [mut flat, mut steep] = [DVec3::ZERO; 2];
+                    for (by, c) in row.iter().zip(c) {
+                        flat += by.as_dvec3() * c[0];
+                        steep += by.as_dvec3() * c[1];
+                    }
+                    slopes[0] += flat * (a[1] * b[0]);
+                    slopes[1] += flat * (a[0] * b[1]);
+                    slopes[2] += steep * (a[0] * b[0]);
+                }
+            }
+            let volume = (DMat3::from_cols(slopes[0], slopes[1], slopes[2]) * inverse).determinant();
+            if volume <= least.0 - 1e-9 {
+                least = (volume, q);
+            }
+        }
+        (least.0 < 0.0).then(|| {
+            let local = [0, 1, 2].map(|a| least.1[a] as f32 / (samples[a] - 1) as f32);
+            let at = [0, 1, 2].map(|a| (local[a] * self.divisions[a] as f32).round() as usize);
+            let place = self.origin + self.edges * Vec3::from(local);
+            Folded { points: vec![format!("control point {}, {}, {}", at[0], at[1], at[2])], place }
+        })
+    }
+
     fn inverse(&self) -> DMat3 {
         let [s, t, u] = [0, 1, 2].map(|a| self.edges.col(a).as_dvec3());
         let volume = t.cross(u).dot(s);
@@ -355,8 +406,34 @@ impl Lattice {
 
     /// Feeds all of it to a key that has a say in where points go.
     pub fn digest(&self, into: &mut Digest) {
-        into.bytes(b"lattice 1").vectors(&[self.origin, self.edges.x_axis, self.edges.y_axis, self.edges.z_axis]);
+        into.bytes(b"lattice 2").vectors(&[self.origin, self.edges.x_axis, self.edges.y_axis, self.edges.z_axis]);
         into.numbers(&self.divisions.map(|d| d as u32)).vectors(&self.moves);
         into.vectors(&self.held).floats(&[self.power]);
     }
+}
+
+/// Bernstein polynomials of a degree and their slopes, at places spread evenly from 0 to 1.
+fn table(degree: usize, samples: usize) -> Vec<Vec<[f64; 2]>> {
+    let polynomials = |degree: usize, t: f64| {
+        let mut row = vec![1.0];
+        for _ in 0..degree {
+            let mut next = vec![0.0; row.len() + 1];
+            for (k, b) in row.iter().enumerate() {
+                next[k] += (1.0 - t) * b;
+                next[k + 1] += t * b;
+            }
+            row = next;
+        }
+        row
+    };
+    let at = |s: usize| {
+        let t = s as f64 / (samples - 1) as f64;
+        let (row, below) = (polynomials(degree, t), polynomials(degree - 1, t));
+        let slope = |k: usize| {
+            let left = if k > 0 { below[k - 1] } else { 0.0 };
+            degree as f64 * (left - below.get(k).copied().unwrap_or(0.0))
+        };
+        (0..=degree).map(|k| [row[k], slope(k)]).collect()
+    };
+    (0..samples).map(at).collect()
 }

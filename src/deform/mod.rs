@@ -1,29 +1,36 @@
-//! Free-form deformation with fixed points (Liu, Liu 2011): lattices, pins, girths; for any points whatever.
+//! Free-form deformation with fixed points (Liu, Liu 2011): lattices, cages, pins, girths; for any points whatever.
 //!
-//! A [`Deformer`] says where every place in space goes: a [`Lattice`], [`Pins`], or a [`Warp`] fitted to pairs of
-//! places. What it is applied to is plain points; [`mesh`] and [`strands`] see to normals,
+//! A [`Deformer`] says where every place in space goes: a [`Lattice`], a [`Cage`] of scattered control points,
+//! [`Pins`], or a [`Warp`] fitted to pairs of places. What it is applied to is plain points; [`mesh`] and [`strands`] see to normals,
 //! seams and roots. [`fit`] finds the control motion that gives a garment a wanted girth.
 //!
 //! `docs/methods/deform.md` has the method, its sources and every departure; equations are numbered as in the paper.
 
 mod apply;
+mod cage;
 mod dense;
 mod error;
 mod fit;
 mod kernel;
 mod lattice;
+mod mean;
 mod pins;
+mod shell;
 mod verbs;
 mod warp;
 
 #[cfg(test)]
+mod cage_tests;
+#[cfg(test)]
 mod tests;
 
 pub use apply::{Deformer, Hold, all, mesh, points, strands};
+pub use cage::Cage;
 pub use error::DeformError;
 pub use fit::{Band, FitOptions, Fitted, Measure, Target, fit, outline};
 pub use lattice::{Lattice, MOST_DIVISIONS, Move, Selection};
 pub use pins::{Pin, Pins};
+pub use shell::{MOST_CAGE_DIVISIONS, MOST_POINTS};
 pub use verbs::{Bend, Lift, Taper};
 pub use warp::Warp;
 
@@ -37,6 +44,15 @@ crate::choices! {
         /// Stays where it is, and holds what is near it.
         Fixed = "fixed",
     }
+}
+
+/// Where moved control points turn space inside out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Folded {
+    /// The control points next to it.
+    pub points: Vec<String>,
+    /// Where it was before, cm.
+    pub place: glam::Vec3,
 }
 
 /// The least and the greatest exponent of an affinity.

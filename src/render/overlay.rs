@@ -124,6 +124,18 @@ pub fn draw(scene: &Scene, camera: &Camera, pen: f32) -> Drawing {
     Drawing { wires: vec![guides, thin, bold, dots], labels }
 }
 
+/// The words that every picture shows, where they stand for `camera`.
+pub fn notes(scene: &Scene, camera: &Camera) -> Vec<Label> {
+    /// Between a thing and its words, cm.
+    const GAP: f32 = 0.8;
+    let along = |p: &Vec3| p.dot(camera.right);
+    let label = |note: &crate::scene::Note| {
+        let end = *note.points.iter().max_by(|a, b| along(a).total_cmp(&along(b)))?;
+        Some(Label { at: end + camera.right * GAP, text: note.text.clone(), colour: note.colour })
+    };
+    scene.overlay.notes.iter().filter_map(label).collect()
+}
+
 /// Guides, each node in the colour of the stage that bent it.
 fn bent(hair: &Hair, out: &mut Wires) {
     let guides = &hair.guides;

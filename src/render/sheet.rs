@@ -452,7 +452,7 @@ impl Stage {
         steps.step()?;
         let pixels = raster::draw(&bundles, &canvas, task)?;
         steps.step()?;
-        Ok((pixels, drawing.map(|d| d.labels).unwrap_or_default()))
+        Ok((pixels, drawing.map_or_else(|| overlay::notes(scene, camera), |d| d.labels)))
     }
 }
 

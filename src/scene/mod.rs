@@ -17,7 +17,7 @@ use crate::geometry::{Bounds, Mesh, Strands};
 pub use locks::{LockKind, Locks};
 pub use look::{Background, HairMaterial, Look, MeshMaterial, Shading, TuftMaterial, View};
 pub use motion::{Motion, Shown, Timeline};
-pub use overlay::{Arrow, Line, Marker, Overlay, WireBox, WireSphere};
+pub use overlay::{Arrow, Line, Marker, Note, Overlay, WireBox, WireSphere};
 
 /// A finished hairstyle.
 #[derive(Clone, Debug)]

@@ -1,4 +1,4 @@
-//! What the debug view draws over the head.
+//! What the debug view draws over the head, and the words that every picture shows.
 
 use glam::{Mat3, Vec3};
 
@@ -19,6 +19,19 @@ pub struct Overlay {
     pub thin: Vec<Line>,
     /// Points: roots, landmarks.
     pub markers: Vec<Marker>,
+    /// Words that every picture shows, not only the debug view: what tapes read.
+    pub notes: Vec<Note>,
+}
+
+/// Words beside something.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Note {
+    /// Points of it; the words stand beside the one that is farthest to the right in a picture.
+    pub points: Vec<Vec3>,
+    /// The words.
+    pub text: String,
+    /// Their colour.
+    pub colour: Colour,
 }
 
 /// An oriented box.
@@ -90,6 +103,7 @@ impl Overlay {
         }
         self.lines.iter_mut().chain(&mut self.thin).flat_map(|l| &mut l.points).for_each(|p| *p += by);
         self.markers.iter_mut().for_each(|m| m.position += by);
+        self.notes.iter_mut().flat_map(|n| &mut n.points).for_each(|p| *p += by);
     }
 
     /// Appends everything of another overlay.
@@ -100,5 +114,6 @@ impl Overlay {
         self.lines.extend_from_slice(&other.lines);
         self.thin.extend_from_slice(&other.thin);
         self.markers.extend_from_slice(&other.markers);
+        self.notes.extend_from_slice(&other.notes);
     }
 }

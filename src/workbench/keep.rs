@@ -21,6 +21,10 @@ pub enum Shows {
 pub fn scene_key(what: &str, scene: &Scene, shows: Shows, memo: &Memo) -> Digest {
     let mut key = Digest::new(what);
     key.bytes(scene.name.as_bytes()).data(&scene.views).data(&scene.look).data(&scene.placement);
+    match shows {
+        Shows::Hair => key.data(&scene.overlay.notes),
+        Shows::Domains | Shows::Places => key.data(&scene.overlay),
+    };
     for part in &scene.parts {
         key.bytes(part.name.as_bytes());
         moves(&mut key, part.motion.as_ref(), memo);

@@ -3,6 +3,7 @@
 local examples = {
   bob           = "three-quarter",
   braid         = "back",
+  caged         = "front",
   crop          = "three-quarter",
   lifted        = "front",
   long_straight = "front",

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use super::super::call::{Call, Result};
+use super::clip::{MovingLocks, MovingStrands, StillLocks};
 use super::head::give;
 use super::lattice::failed;
 use super::piece::Piece;
 use super::strands::Lock;
 use super::tuft::{Wig, ground, settled as settled_tufts, tuft_error};
 use crate::deform::{self, DeformError, Deformer, Hold};
-use crate::geometry::Strands;
+use crate::geometry::{Clip, Strands};
 use crate::groom::{Body, keep_out};
 use crate::head::{Head, matching};
 use crate::math::Digest;
@@ -114,6 +115,64 @@ pub fn carried_piece(call: &Call, piece: &Piece, to: &Arc<Head>) -> Result<Piece
         mesh
     };
     Ok(Piece { mesh: Arc::new(mesh), head: Arc::clone(to), ..piece.clone() })
+}
+
+/// Refuses frames that hold what the old head did.
+fn at_rest(call: &Call, is_moved: bool, how: &str) -> Result<()> {
+    if is_moved {
+        let message = "the head's own motion is in these frames, and the other head turns elsewhere";
+        return Err(call.problem(message, Some(format!("carry the hair first, then let it move: {how}"))));
+    }
+    Ok(())
+}
+
+/// `StrandsClip:carry`: the hair at rest, and every frame.
+pub fn carry_moving_strands(call: &Call) -> Result<Value> {
+    let (this, fields) = (call.this::<MovingStrands>()?, call.read::<CarryFields>()?);
+    at_rest(call, this.motion.is_some(), "`hair:carry { to = other }:simulate { motion = other:motion { ... } }`")?;
+    let (from, to) = (&this.rest.area.head, &fields.to);
+    let by = between(call, from, to)?;
+    let frames = |clip: &Clip<Strands>| {
+        clip.try_map(|i, frame| {
+            call.task().progress("carry", i as f32 / clip.count() as f32);
+            laid(call, frame, from, to, &by)
+        })
+    };
+    let strands = frames(&this.strands)?;
+    let is_one = this.strands.frames.iter().zip(&this.guides.frames).all(|(a, b)| Arc::ptr_eq(a, b));
+    let guides = if is_one { strands.clone() } else { frames(&this.guides)? };
+    let rest = carried_strands(call, &this.rest, to)?;
+    let mut key = Digest::new("carry clip 1");
+    key.key(this.key).key(from.key()).key(to.key());
+    Ok(give(MovingStrands { rest, strands, guides, motion: None, key: key.finish() }))
+}
+
+/// `LocksClip:carry`: the locks at rest, and how every frame differs from them.
+pub fn carry_moving_locks(call: &Call) -> Result<Value> {
+    let (this, fields) = (call.this::<MovingLocks>()?, call.read::<CarryFields>()?);
+    let how = "`coif.animate` after `locks:carry { to = other }`, with the motion of the other head";
+    at_rest(call, this.motion.is_some(), how)?;
+    let by = [between(call, this.rest.head(), &fields.to)?];
+    let rest = match &this.rest {
+        StillLocks::Tufts(wig) => StillLocks::Tufts(carried_tufts(call, wig, &fields.to)?),
+        StillLocks::Piece(piece) => StillLocks::Piece(Arc::new(carried_piece(call, piece, &fields.to)?)),
+    };
+    let error = |e: DeformError| failed(call, "", &e);
+    let before = this.rest.locks().mesh.mesh.positions.clone();
+    let still = rest.locks().mesh.mesh.positions.clone();
+    if still.len() != before.len() {
+        let message = "on the other head these locks have another mesh, so that the frames do not fit";
+        return Err(call.problem(message, Some(format!("carry the locks first, then move them: {how}"))));
+    }
+    let before = deform::points(&before, &by, call.task()).map_err(error)?;
+    let surface = this.surface.try_map(|_, frame| {
+        let mut frame = deform::points(frame, &by, call.task()).map_err(error)?;
+        for ((p, before), still) in frame.iter_mut().zip(&before).zip(&still) {
+            *p = *still + (*p - *before);
+        }
+        Ok(Arc::new(frame))
+    })?;
+    Ok(give(MovingLocks { rest, surface, motion: None, source: call.source() }))
 }
 
 /// `Strands:carry`.

@@ -1,4 +1,4 @@
-//! Deformation: what lattices and pins do to hair, heads and clips.
+//! Deformation: what lattices, cages, pins and warps do to hair, heads and clips.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::super::call::{Call, Result};
 use super::super::registry::Entry;
-use super::carry::{CarryFields, carry_piece, carry_strands, carry_tufts};
+use super::carry::{CarryFields, carry_moving_locks, carry_moving_strands, carry_piece, carry_strands, carry_tufts};
 use super::clip::{MovingLocks, MovingStrands};
 use super::head::give;
 use super::lattice::failed;
@@ -14,7 +14,7 @@ use super::overlay;
 use super::piece::Piece;
 use super::strands::Lock;
 use super::tuft::{Wig, settled as settled_tufts, tuft_error};
-use crate::deform::{self, Bend, DeformError, Deformer, Hold, Lattice, Lift, Pins, Taper};
+use crate::deform::{self, Bend, Cage, DeformError, Deformer, Folded, Hold, Lattice, Lift, Pins, Taper, Warp};
 use crate::geometry::Strands;
 use crate::groom::{Body, keep_out};
 use crate::head::Head;
@@ -25,9 +25,9 @@ use crate::task::{Warned, Warning};
 use crate::tuft::{Stroke, Tuft, Tufts};
 
 crate::params! {
-    /// Moves it by lattices and pins, one after the other.
+    /// Moves it by lattices, cages, pins and warps, one after the other.
     pub struct DeformFields("deform") {
-        /// Lattices and pins, in the order they act.
+        /// Lattices, cages, pins and warps, in the order they act.
         by: Vec<By>, positional();
     }
 }
@@ -51,18 +51,24 @@ pub struct By(pub Deformer);
 
 impl FieldType for By {
     fn kind() -> Kind {
-        Kind::OneOf(vec![Kind::Object(Lattice::NAME), Kind::Object(Pins::NAME)])
+        Kind::OneOf([Lattice::NAME, Cage::NAME, Pins::NAME, Warp::NAME].map(Kind::Object).to_vec())
     }
     fn read(value: &Value, reader: &mut Reader) -> Option<Self> {
         if let Value::Handle(h) = value {
             if let Some(lattice) = h.get::<Lattice>() {
                 return Some(Self(Deformer::Lattice(lattice)));
             }
+            if let Some(cage) = h.get::<Cage>() {
+                return Some(Self(Deformer::Cage(cage)));
+            }
             if let Some(pins) = h.get::<Pins>() {
                 return Some(Self(Deformer::Pins(pins)));
             }
+            if let Some(warp) = h.get::<Warp>() {
+                return Some(Self(Deformer::Warp(warp)));
+            }
         }
-        reader.wrong_type("a Lattice or Pins", value)
+        reader.wrong_type("a Lattice, a Cage, Pins or a Warp", value)
     }
 }
 
@@ -73,11 +79,20 @@ pub trait Verb: Params {
     /// # Errors
     /// What no lattice can be made of.
     fn deformers(&self, points: &[Vec3]) -> std::result::Result<Vec<Deformer>, DeformError>;
+
+    /// True when the script has moved their control points itself, so that it wants to know when they fold.
+    fn is_by_hand(&self) -> bool {
+        false
+    }
 }
 
 impl Verb for DeformFields {
     fn deformers(&self, _: &[Vec3]) -> std::result::Result<Vec<Deformer>, DeformError> {
         Ok(self.by.iter().map(|b| b.0.clone()).collect())
+    }
+
+    fn is_by_hand(&self) -> bool {
+        true
     }
 }
 
@@ -142,6 +157,7 @@ pub fn moving_strands_methods() -> Vec<Entry> {
         Entry::both::<Bend, HairFields>("StrandsClip:bend", "StrandsClip", moving_strands::<Bend>),
         Entry::both::<Taper, HairFields>("StrandsClip:taper", "StrandsClip", moving_strands::<Taper>),
         Entry::both::<Lift, HairFields>("StrandsClip:lift", "StrandsClip", moving_strands::<Lift>),
+        Entry::table::<CarryFields>("StrandsClip:carry", "StrandsClip", carry_moving_strands),
     ]
 }
 
@@ -152,12 +168,51 @@ pub fn moving_locks_methods() -> Vec<Entry> {
         Entry::table::<Bend>("LocksClip:bend", "LocksClip", moving_locks::<Bend>),
         Entry::table::<Taper>("LocksClip:taper", "LocksClip", moving_locks::<Taper>),
         Entry::table::<Lift>("LocksClip:lift", "LocksClip", moving_locks::<Lift>),
+        Entry::table::<CarryFields>("LocksClip:carry", "LocksClip", carry_moving_locks),
     ]
 }
 
 /// The deformers of a call on a value with these points.
 pub fn deformers<V: Verb>(call: &Call, verb: &V, points: &[Vec3]) -> Result<Vec<Deformer>> {
-    verb.deformers(points).map_err(|e| failed(call, "", &e))
+    let by = verb.deformers(points).map_err(|e| failed(call, "", &e))?;
+    if verb.is_by_hand() {
+        for (i, one) in by.iter().enumerate() {
+            folded(call, (by.len() > 1).then_some(i + 1), one);
+        }
+        // Later ones act on what the first has moved.
+        if let Some(Deformer::Cage(cage)) = by.first() {
+            torn(call, cage, points);
+        }
+    }
+    Ok(by)
+}
+
+/// Warns of what folds over itself; `number` tells several deformers apart.
+fn folded(call: &Call, number: Option<usize>, by: &Deformer) {
+    let of = |what: &str, found: Folded| {
+        let what = number.map_or_else(|| format!("the {what}"), |n| format!("number {n}, a {what},"));
+        let Vec3 { x, y, z } = found.place;
+        format!("{what} folds over itself near ({x:.1}, {y:.1}, {z:.1}), at {}", found.points.join(", "))
+    };
+    let message = match by {
+        Deformer::Lattice(lattice) => lattice.folded().map(|f| of("lattice", f)),
+        Deformer::Cage(cage) => cage.folded().map(|f| of("cage", f)),
+        Deformer::Pins(_) | Deformer::Warp(_) => None,
+    };
+    if let Some(message) = message {
+        let hint = "what is there turns inside out: move the point less far, or its neighbours with it";
+        call.warn("", Warning::new(message).hint(hint));
+    }
+}
+
+/// Warns of what a cage leaves behind.
+fn torn(call: &Call, cage: &Cage, points: &[Vec3]) {
+    let count = cage.left_behind(points);
+    if count > 0 {
+        let message =
+            format!("{count} of {} points lie just outside of the cage where it moves, and stay behind", points.len());
+        call.warn("", Warning::new(message).hint("make the cage larger, as with `margin = 3`"));
+    }
 }
 
 /// A key of deformers.
@@ -172,8 +227,9 @@ pub fn drawn(overlay: &Arc<Overlay>, by: &[Deformer]) -> Arc<Overlay> {
     for one in by {
         match one {
             Deformer::Lattice(lattice) => all.extend(&overlay::lattice(lattice)),
+            Deformer::Cage(cage) => all.extend(&overlay::cage(cage)),
             Deformer::Pins(pins) => all.extend(&overlay::pins(pins)),
-            Deformer::Warp(_) => {}
+            Deformer::Warp(warp) => all.extend(&overlay::warp(warp)),
         }
     }
     Arc::new(all)

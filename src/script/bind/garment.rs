@@ -143,6 +143,8 @@ crate::params! {
         width: f32 = 1.6, unit("cm"), range(0.2, 20.0);
         /// Its colour.
         colour: Colour = Colour::hex(0xf2_c1_2e);
+        /// Whether pictures say beside it what it reads.
+        label: bool = true;
     }
 }
 
@@ -533,6 +535,9 @@ fn ribbon(call: &Call) -> Result<Value> {
     let garment = Garment::new("tape", garment::ribbon(&outline, fields.width));
     let mut overlay = Overlay::default();
     overlay.extend(&overlay::tape(&tape.name, &outline));
+    if fields.label {
+        overlay.notes.push(overlay::reading(&tape.name, &outline));
+    }
     let material = MeshMaterial { colour: fields.colour, roughness: 0.7 };
     Ok(give(Cloth { garment: Arc::new(garment), material, overlay: Arc::new(overlay), source: call.source() }))
 }

@@ -254,14 +254,14 @@ fn lattice(call: &Call) -> Result<Value> {
                 Lattice::new(b.centre - b.axes * half, edges, [l, m, n])
             }
             other => {
-                let bounds = bounds_of(other).ok_or_else(|| {
+                let points = points_of(other).ok_or_else(|| {
                     let message = format!(
                         "expected a Garment, Strands, Tufts, a Piece, a Head or a Box, got {} `{other}`",
                         other.type_name()
                     );
                     call.problem_at("around", message, None)
                 })?;
-                Lattice::around(bounds.grown(fields.margin), [l, m, n])
+                Lattice::around(Bounds::of(points).grown(fields.margin), [l, m, n])
             }
         },
     };
@@ -269,22 +269,27 @@ fn lattice(call: &Call) -> Result<Value> {
         .map_err(|e| failed(call, if matches!(e, DeformError::OutOfRange { .. }) { "divisions" } else { "" }, &e))
 }
 
-/// The bounds of anything that has some.
-fn bounds_of(value: &Value) -> Option<Bounds> {
+/// The points of anything that has some.
+pub fn points_of(value: &Value) -> Option<Vec<Vec3>> {
     let Value::Handle(h) = value else { return None };
+    if let Some(b) = h.get::<OrientedBox>() {
+        let sign = |i: usize, bit: usize| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let corner = |i: usize| b.centre + b.axes * (b.half * Vec3::new(sign(i, 0), sign(i, 1), sign(i, 2)));
+        return Some((0..8).map(corner).collect());
+    }
     if let Some(lock) = h.get::<Lock>() {
-        return Some(lock.strands.bounds());
+        return Some(lock.strands.points.clone());
     }
     if let Some(wig) = h.get::<Wig>() {
-        return Some(wig.tufts.mesh().mesh.bounds());
+        return Some(wig.tufts.mesh().mesh.positions.clone());
     }
     if let Some(piece) = h.get::<Piece>() {
-        return Some(piece.mesh.bounds());
+        return Some(piece.mesh.positions.clone());
     }
     if let Some(cloth) = h.get::<Cloth>() {
-        return Some(cloth.garment.mesh.bounds());
+        return Some(cloth.garment.mesh.positions.clone());
     }
-    h.get::<Head>().map(|head| head.mesh.bounds())
+    h.get::<Head>().map(|head| head.mesh.positions.clone())
 }
 
 /// An index range of a script: nothing, a number, or two.

@@ -4,6 +4,7 @@
 //! its arguments strictly, calls the core, and gives the core's errors a place. This file is the table of contents.
 
 mod animate;
+mod cage;
 mod carry;
 mod clip;
 mod constants;
@@ -52,6 +53,7 @@ pub fn registry() -> Registry {
         piece::functions(),
         animate::functions(),
         lattice::functions(),
+        cage::functions(),
         garment::functions(),
         material::functions(),
         clip::functions(),
@@ -67,6 +69,7 @@ pub fn registry() -> Registry {
         vec![animate::noun()],
         vec![piece::noun(), material::noun(), scene::noun(), test::noun()],
         lattice::nouns(),
+        cage::nouns(),
         vec![garment::noun()],
         tested::nouns(),
     ];

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::region::Area;
-use crate::deform::{Lattice, Pins, PointKind};
+use crate::deform::{Cage, Lattice, Pins, PointKind, Warp};
 use crate::dynamics::{Field, Force, Zone};
 use crate::geometry::slice::Outline;
 use crate::geometry::{OrientedBox, Root};
 use crate::groom::{Domain, Queue};
 use crate::math::Colour;
 use crate::render::overlay::stage_colour;
-use crate::scene::{Arrow, Line, Marker, Overlay, WireBox, WireSphere};
+use crate::scene::{Arrow, Line, Marker, Note, Overlay, WireBox, WireSphere};
 
 /// Colour of partings.
 const PARTING: Colour = Colour::hex(0xe0_3c_31);
@@ -28,6 +28,8 @@ const TAPE: Colour = Colour::hex(0xb5_7a_00);
 const FORCE: Colour = Colour::hex(0x1f_7a_8c);
 /// Colour of what is pinned.
 const PIN: Colour = Colour::hex(0x2f_80_3b);
+/// Cages with more control points than this are drawn without their numbers.
+const MOST_NUMBERS: usize = 60;
 /// Length of arrows, cm.
 const ARROW: f32 = 4.0;
 
@@ -105,6 +107,46 @@ pub fn lattice(lattice: &Lattice) -> Overlay {
     out
 }
 
+/// A cage as it stands: its edges, and its control points by kind with their names or numbers.
+pub fn cage(cage: &Cage) -> Overlay {
+    let mut out = Overlay::default();
+    for ring in cage.faces() {
+        for (k, &a) in ring.iter().enumerate() {
+            let b = ring[(k + 1) % ring.len()];
+            // Every edge is in two faces, once in each direction.
+            if a < b {
+                let points = vec![cage.place(a as usize), cage.place(b as usize)];
+                out.thin.push(Line { points, colour: GRID });
+            }
+        }
+    }
+    let is_told = cage.count() <= MOST_NUMBERS;
+    for index in 0..cage.count() {
+        let (position, colour) = (cage.place(index), kind_colour(cage.kind(index)));
+        let number = || if is_told { (index + 1).to_string() } else { String::new() };
+        let label = cage.name(index).map_or_else(number, ToOwned::to_owned);
+        if position != cage.rest(index) {
+            out.arrows.push(Arrow { from: cage.rest(index), to: position, colour });
+        }
+        out.markers.push(Marker { position, colour, label });
+    }
+    held(cage.held(), &mut out);
+    out
+}
+
+/// A warp: where its points go and where they came from.
+pub fn warp(warp: &Warp) -> Overlay {
+    let mut out = Overlay::default();
+    for &(from, to) in warp.pairs() {
+        let colour = kind_colour(if from == to { PointKind::Fixed } else { PointKind::Feature });
+        if from != to {
+            out.arrows.push(Arrow { from, to, colour });
+        }
+        out.markers.push(Marker { position: to, colour, label: String::new() });
+    }
+    out
+}
+
 fn held(places: &[Vec3], out: &mut Overlay) {
     let colour = kind_colour(PointKind::Fixed);
     out.markers.extend(places.iter().map(|&position| Marker { position, colour, label: String::new() }));
@@ -167,6 +209,13 @@ pub fn tape(name: &str, outline: &Outline) -> Overlay {
         markers: vec![Marker { position: right, colour: TAPE, label }],
         ..Overlay::default()
     }
+}
+
+/// What a tape reads, beside it.
+pub fn reading(name: &str, outline: &Outline) -> Note {
+    let height = outline.points.first().map_or(0.0, |p| p.y);
+    let points = outline.hull().iter().map(|p| Vec3::new(p.x, height, p.y)).collect();
+    Note { points, text: format!("{name} {:.1} cm", outline.tape()), colour: TAPE }
 }
 
 /// Shrinks boxes that reach far beyond everything that is drawn: their sides would lie outside of every view.
