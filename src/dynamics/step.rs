@@ -16,7 +16,7 @@ use multiversion::multiversion;
 
 use super::acting::Acting;
 use super::bend::Factors;
-use super::lanes::{LANES, Lanes, Plane, each};
+use super::lanes::{LANES, Lanes, Plane, each, three};
 use super::length::{self, Memory};
 use super::options::{Lengths, Solver};
 use super::packet::Packet;
@@ -80,7 +80,7 @@ pub fn advance(packet: &mut Packet, moments: &[Moment], rules: &Rules, scratch: 
         if let Some(bend) = bend {
             let m = moment.to.matrix3;
             let turn = [m.x_axis.to_array(), m.y_axis.to_array(), m.z_axis.to_array()];
-            bend.apply(at, (free, rest), &turn, &mut scratch.force, &mut scratch.factors);
+            bend.apply(at, (free, rest), &turn, &scratch.force, &mut scratch.factors);
         }
         if matches!(rules.solver, Solver::Chain) {
             scratch.memory.look(at, &scratch.before, taut);
@@ -158,9 +158,9 @@ fn drift(packet: &mut Packet, moment: &Moment, rules: &Rules, scratch: &mut Scra
             force.add(&at, &mut a);
         }
         let v = packet.velocity.row(k);
-        let mut next = [0, 1, 2].map(|c| each(|l| at[c][l] + h * (v[c][l] * rules.kept)));
+        let mut next = three!(c => each(|l| at[c][l] + h * (v[c][l] * rules.kept)));
         if bends {
-            scratch.force.put(k, a.map(|a| each(|l| h * kick * a[l])));
+            scratch.force.put(k, three!(c => each(|l| h * kick * a[c][l])));
         } else {
             for c in 0..3 {
                 for l in 0..LANES {
