@@ -16,7 +16,7 @@ use multiversion::multiversion;
 
 use super::acting::Acting;
 use super::bend::Factors;
-use super::lanes::{LANES, Lanes, Plane, each, three};
+use super::lanes::{LANES, Lanes, Plane, dot, each, three};
 use super::length::{self, Memory};
 use super::options::{Lengths, Solver};
 use super::packet::Packet;
@@ -39,6 +39,8 @@ pub struct Rules<'a> {
     pub skin: Option<&'a Skin>,
     /// Of hair on skin.
     pub friction: f32,
+    /// Whether a strand stops where it is fastest: hair is to come to rest. The least number of steps between stops.
+    pub stops: Option<usize>,
 }
 
 /// One step of all strands.
@@ -117,6 +119,31 @@ pub fn advance(packet: &mut Packet, moments: &[Moment], rules: &Rules, scratch: 
         ] {
             for (v, (a, b)) in v.iter_mut().zip(a.iter().zip(b)) {
                 *v = each(|l| (a[l] - b[l]) * one_over);
+            }
+        }
+        if let Some(gap) = rules.stops {
+            stop(packet, gap);
+        }
+    }
+}
+
+/// Stops the strands that have just become slower: where a swing is fastest it passes the place of rest.
+#[inline(always)]
+fn stop(packet: &mut Packet, gap: usize) {
+    let Packet { velocity, swing, .. } = packet;
+    let mut now = [0.0; LANES];
+    for k in 0..velocity.x.len() {
+        let v = velocity.row(k);
+        let square = dot(&v, &v);
+        now = each(|l| now[l] + square[l]);
+    }
+    let [before, since] = *swing;
+    let stops = each(|l| if (now[l] < before[l]) & (since[l] >= gap as f32) { 1.0 } else { 0.0 });
+    *swing = [each(|l| now[l] * (1.0 - stops[l])), each(|l| (since[l] + 1.0) * (1.0 - stops[l]))];
+    if stops != [0.0; LANES] {
+        for v in [&mut velocity.x, &mut velocity.y, &mut velocity.z] {
+            for v in v {
+                *v = each(|l| if stops[l] > 0.0 { 0.0 } else { v[l] });
             }
         }
     }
