@@ -7,7 +7,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use crate::render::sheet::grouped;
-use crate::script::{Origin, Outcome};
+use crate::script::{Origin, Outcome, Rest};
 use crate::workbench::{Report, Stage, Written};
 
 /// For people: parts, times, files.
@@ -52,6 +52,19 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
                 )
             }
             None => writeln!(out, "{:>8}  {before} triangles are within it", "budget"),
+        };
+    }
+    for rest in &report.outcome.rests {
+        let Rest { source, strands, moving, seconds, steps } = rest;
+        let (strands, steps) = (grouped(*strands), grouped(*steps));
+        let _ = match moving {
+            0 => writeln!(out, "{:>8}  all {strands} strands after {seconds:.1} s, {steps} steps, at {source}", "rest"),
+            _ => writeln!(
+                out,
+                "{:>8}  {} of {strands} strands still moved at the limit of {seconds:.1} s, {steps} steps, at {source}",
+                "rest",
+                grouped(*moving)
+            ),
         };
     }
     let stage = |s: &Stage| match s.origin {
@@ -101,6 +114,7 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "parts": report.figures,
         "ms": stages,
         "calls": calls,
+        "rests": rests(&report.outcome),
         "files": files,
         "budget": report.budget.map(|b| json!({
             "before": b.before, "after": b.after, "lowered": b.lowered, "tufts": b.tufts, "pieces": b.pieces, "tolerance_cm": b.tolerance,
@@ -108,6 +122,17 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "warnings": report.outcome.diagnostics.len(),
     });
     format!("{object}\n")
+}
+
+/// How strands came to rest, for programs.
+pub fn rests(outcome: &Outcome) -> Value {
+    let rest = |r: &Rest| {
+        json!({
+            "source": r.source, "strands": r.strands, "moving": r.moving, "seconds": (f64::from(r.seconds) * 1e3).round() / 1e3,
+            "steps": r.steps,
+        })
+    };
+    outcome.rests.iter().map(rest).collect()
 }
 
 /// Milliseconds with two decimals.

@@ -182,7 +182,7 @@ pub const NEAR: f32 = 0.005;
 /// Most such rounds.
 pub const MORE: usize = 6;
 /// How far it may be after them before all of the strand is laid again.
-pub const LOOSE: f32 = 0.05;
+pub const LOOSE: f32 = 0.01;
 
 /// 1 for the lanes in which a segment is off its length by more than a part `by`.
 #[inline(always)]

@@ -62,6 +62,12 @@ pub struct Settled {
     pub strands: Strands,
     /// Simulated time until they were at rest, s; none when they were not.
     pub rested: Option<f32>,
+    /// Simulated time in all, s.
+    pub time: f32,
+    /// Steps in all.
+    pub steps: usize,
+    /// Strands that still moved at the end.
+    pub moving: usize,
     /// The greatest speed of a node at the end, cm/s.
     pub speed: f32,
 }
@@ -105,11 +111,12 @@ pub fn settle(hair: &Hair, options: &SettleOptions, task: &Task) -> Result<Warne
     let stuck = finish(hair, &mut strands, &Affine3A::IDENTITY);
     let mut warnings = stuck_warning(stuck, strands.count());
     if moving > 0 {
-        let message = format!("hair still moved at up to `{speed:.1}` cm/s after {} s", options.limit);
+        let (count, limit) = (strands.count(), options.limit);
+        let message = format!("hair still moved at up to `{speed:.1}` cm/s after {limit} s: {moving} of {count} strands");
         warnings
             .push(Warning::new(message).hint("raise `limit` or `drag`; a force that never balances keeps it moving"));
     }
-    Ok(Warned { value: Settled { strands, rested: (moving == 0).then_some(time), speed }, warnings })
+    Ok(Warned { value: Settled { strands, rested: (moving == 0).then_some(time), time, steps: world.steps(), moving, speed }, warnings })
 }
 
 /// Moves strands for a time and keeps every frame, the first of which is the strands as they are. With a motion the

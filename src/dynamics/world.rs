@@ -294,6 +294,11 @@ impl<'a> World<'a> {
         moved
     }
 
+    /// How many steps are done.
+    pub fn steps(&self) -> usize {
+        self.done
+    }
+
     /// How many strands still move.
     pub fn moving(&self) -> usize {
         self.packets.iter().map(|p| p.each_strand().count()).sum()
