@@ -223,13 +223,7 @@ impl Bend {
 
     /// Writes A, B and e of every joint.
     #[inline(always)]
-    fn gather(
-        &mut self,
-        at: &Plane,
-        (free, rest): (&[Lanes], &[Lanes]),
-        turn: &[[f32; 3]; 3],
-        factors: &mut Factors,
-    ) {
+    fn gather(&mut self, at: &Plane, (free, rest): (&[Lanes], &[Lanes]), turn: &[[f32; 3]; 3], factors: &mut Factors) {
         let (mut t, mut n) = (turned(turn, &self.tangent), turned(turn, &self.normal));
         let mut b = cross(&t, &n);
         // Of the segment before: its vector, and one over its squared length.

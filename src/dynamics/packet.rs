@@ -183,7 +183,8 @@ impl Packet {
         for k in 0..nodes {
             packet.is_held[k] = packet.free[k].contains(&0.0);
         }
-        let bends: Vec<_> = some.iter().filter_map(|&(p, lane)| Some((p.bend.as_ref()?, lane, p.counts[lane]))).collect();
+        let bends: Vec<_> =
+            some.iter().filter_map(|&(p, lane)| Some((p.bend.as_ref()?, lane, p.counts[lane]))).collect();
         packet.bend = Bend::regrouped(&bends, nodes);
         packet
     }
@@ -248,8 +249,7 @@ impl Packet {
 /// Puts what strands are left side by side again when many places are empty. What a strand does depends on its own numbers
 /// only, so this changes no bit of it.
 pub fn regroup(packets: &mut Vec<Packet>) {
-    let left: Vec<(&Packet, usize)> =
-        packets.iter().flat_map(|p| p.each_strand().map(move |(l, ..)| (p, l))).collect();
+    let left: Vec<(&Packet, usize)> = packets.iter().flat_map(|p| p.each_strand().map(move |(l, ..)| (p, l))).collect();
     if 4 * left.len() < 3 * LANES * packets.len() {
         let fewer: Vec<Packet> = left.par_chunks(LANES).map(Packet::regrouped).collect();
         *packets = fewer;

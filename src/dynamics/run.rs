@@ -112,11 +112,15 @@ pub fn settle(hair: &Hair, options: &SettleOptions, task: &Task) -> Result<Warne
     let mut warnings = stuck_warning(stuck, strands.count());
     if moving > 0 {
         let (count, limit) = (strands.count(), options.limit);
-        let message = format!("hair still moved at up to `{speed:.1}` cm/s after {limit} s: {moving} of {count} strands");
+        let message =
+            format!("hair still moved at up to `{speed:.1}` cm/s after {limit} s: {moving} of {count} strands");
         warnings
             .push(Warning::new(message).hint("raise `limit` or `drag`; a force that never balances keeps it moving"));
     }
-    Ok(Warned { value: Settled { strands, rested: (moving == 0).then_some(time), time, steps: world.steps(), moving, speed }, warnings })
+    Ok(Warned {
+        value: Settled { strands, rested: (moving == 0).then_some(time), time, steps: world.steps(), moving, speed },
+        warnings,
+    })
 }
 
 /// Moves strands for a time and keeps every frame, the first of which is the strands as they are. With a motion the
