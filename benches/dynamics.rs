@@ -5,10 +5,14 @@
 //! Items are steps; particles times steps a second follow from the counts.
 
 use std::hint::black_box;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
-use coif::dynamics::{EARTH, Field, Force, GravityOptions, Hair, HairOptions, Lengths, Plan, Poses, Solver, World};
+use coif::dynamics::{
+    Body, EARTH, Field, Force, GravityOptions, Hair, HairOptions, Lengths, Plan, Poses, SettleOptions, Skin, Solver,
+    World, settle,
+};
 use coif::geometry::{Root, Strands};
+use coif::head::{Head, mannequin};
 use coif::math::rng::Key;
 use coif::params::Direction;
 use coif::task::Task;
@@ -32,11 +36,35 @@ fn level(count: u64, nodes: usize) -> Strands {
     strands
 }
 
+/// The built-in head and its grid, as scripts pass them.
+static HEAD: LazyLock<(Head, Skin)> = LazyLock::new(|| {
+    let head = Head::mannequin(mannequin::Style::Adult).expect("the built-in head");
+    let skin = Skin::new(&head.solid);
+    (head, skin)
+});
+
+fn body() -> Body<'static> {
+    Body { solid: &HEAD.0.solid, skin: &HEAD.1 }
+}
+
+/// Strands that stand out of the upper part and the back of the head.
+fn standing(count: u64, nodes: usize, length: f32) -> Strands {
+    let mut strands = Strands { sources: vec!["bench.lua:1".into()], ..Strands::new() };
+    let ways = (0..).map(|id| (id, Key::new(2, "bench roots").with(id).direction()));
+    for (id, d) in ways.filter(|(_, d)| d.y > 0.0 || d.z < -0.3).take(count as usize) {
+        let skin = HEAD.0.solid.closest(Vec3::new(0.0, 5.0, -1.0) + d * 14.0);
+        let root = Root { id, position: skin.position, normal: skin.normal, uv: Vec2::ZERO, triangle: 0 };
+        let at = |k: usize| skin.position + skin.normal * (0.01 + length * k as f32 / (nodes - 1) as f32);
+        strands.push(root, 0, (0..nodes).map(at));
+    }
+    strands.stage = vec![0; strands.points.len()];
+    strands
+}
+
 /// Steps in one go.
 const STEPS: usize = 48;
 
-fn steps(bencher: Bencher, count: u64, nodes: usize, change: impl Fn(&mut HairOptions)) {
-    let strands = level(count, nodes);
+fn steps(bencher: Bencher, strands: &Strands, body: Option<Body>, change: impl Fn(&mut HairOptions)) {
     let gravity = Field::Gravity(GravityOptions { strength: EARTH, direction: Direction(Vec3::NEG_Y) });
     let mut options =
         HairOptions { hold: 0.0, forces: Some(vec![Arc::new(Force::from(gravity))]), ..HairOptions::default() };
@@ -52,7 +80,7 @@ fn steps(bencher: Bencher, count: u64, nodes: usize, change: impl Fn(&mut HairOp
         is_balanced: false,
         is_loose: false,
     };
-    let hair = Hair { strands: &strands, options: &options, pinned: &[], body: None };
+    let hair = Hair { strands, options: &options, pinned: &[], body };
     let mut world = World::new(hair, plan, &acting).expect("good strands");
     bencher.counter(ItemsCount::new(STEPS)).bench_local(|| world.advance(STEPS, &Task::new()));
 }
@@ -60,7 +88,7 @@ fn steps(bencher: Bencher, count: u64, nodes: usize, change: impl Fn(&mut HairOp
 /// The paper's scene, 2,500 strands of 10 segments, without bending: both forms, both orders.
 #[divan::bench(args = ["chain exact", "chain root_free", "pairs exact", "pairs root_free"])]
 fn paper(bencher: Bencher, form: &str) {
-    steps(bencher, 2500, 11, |o| {
+    steps(bencher, &level(2500, 11), None, |o| {
         o.solver = if form.starts_with("chain") { Solver::Chain } else { Solver::Pairs };
         o.lengths = if form.ends_with("exact") { Lengths::Exact } else { Lengths::RootFree };
     });
@@ -69,13 +97,33 @@ fn paper(bencher: Bencher, form: &str) {
 /// The same with bending.
 #[divan::bench]
 fn bending(bencher: Bencher) {
-    steps(bencher, 2500, 11, |o| o.hold = 4.0);
+    steps(bencher, &level(2500, 11), None, |o| o.hold = 4.0);
+}
+
+/// The paper's count with the head to keep out of: limp in both orders, and with bending.
+#[divan::bench(args = ["pairs", "chain", "chain with bending"])]
+fn head(bencher: Bencher, form: &str) {
+    steps(bencher, &standing(2500, 11, 30.0), Some(body()), |o| {
+        o.solver = if form == "pairs" { Solver::Pairs } else { Solver::Chain };
+        o.hold = if form.ends_with("bending") { 4.0 } else { 0.0 };
+    });
+}
+
+/// 800 guides of 64 nodes let settle as `strands:settle {}` does.
+#[divan::bench(args = ["without head", "with head"], sample_count = 5, sample_size = 1)]
+fn settled(bencher: Bencher, how: &str) {
+    let strands = standing(800, 64, 40.0);
+    let options = HairOptions::default();
+    let body = (how == "with head").then(body);
+    let hair = Hair { strands: &strands, options: &options, pinned: &[], body };
+    let limits = SettleOptions { limit: 10.0, rest_speed: 0.5 };
+    bencher.bench_local(|| settle(&hair, &limits, &Task::new()).expect("good strands"));
 }
 
 /// Particles, in strands of 10 segments.
 #[divan::bench(args = [1_000, 10_000, 100_000, 1_000_000])]
 fn particles(bencher: Bencher, count: u64) {
-    steps(bencher, count / 11, 11, |_| {});
+    steps(bencher, &level(count / 11, 11), None, |_| {});
 }
 
 /// The machine's limit: storing the places of the paper's scene as often.

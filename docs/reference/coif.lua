@@ -1253,7 +1253,7 @@ function Strands:carry(fields) end
 ---@field limit? number # Simulated time after which it ends even if hair still moves. [s; 0.05 to 600; default 10]
 ---@field rest_speed? number # The speed below which hair is at rest. [cm/s; 0.001 to 100; default 0.5]
 ---@field forces? coif.Force[] # What acts on the hair; the earth's gravity when left out.
----@field drag? number # How strongly the air brakes hair: the part of its speed that it loses in a second, at first. 10 in `settle` and 3 in `simulate` when left out. [1/s; 0 to 1000]
+---@field drag? number # How strongly the air brakes hair: the part of its speed that it loses in a second, at first. 2 in `settle` and 3 in `simulate` when left out. [1/s; 0 to 1000]
 ---@field hold? number # How well hair keeps its shape: a strand of this length that sticks out level sags by a tenth of it under its own weight. Bare hair holds about 4 cm, with wax 10, with spray 20; 0 is limp. [cm; 0 to 1000; default 4]
 ---@field clamped? boolean # True when roots keep their direction; otherwise strands hang from their roots as from a hinge. [default true]
 ---@field collide? boolean # True when hair keeps out of the head. [default true]
@@ -1280,7 +1280,7 @@ function Strands:settle(fields) end
 ---@field balanced? boolean # True when the shape at first is the one that gravity leaves hair in: it moves only as wind and the head move it. With false it is the shape without weight, and hair first falls. [default true]
 ---@field loop? boolean # True when the last frame goes over into the first; as the motion when left out.
 ---@field forces? coif.Force[] # What acts on the hair; the earth's gravity when left out.
----@field drag? number # How strongly the air brakes hair: the part of its speed that it loses in a second, at first. 10 in `settle` and 3 in `simulate` when left out. [1/s; 0 to 1000]
+---@field drag? number # How strongly the air brakes hair: the part of its speed that it loses in a second, at first. 2 in `settle` and 3 in `simulate` when left out. [1/s; 0 to 1000]
 ---@field hold? number # How well hair keeps its shape: a strand of this length that sticks out level sags by a tenth of it under its own weight. Bare hair holds about 4 cm, with wax 10, with spray 20; 0 is limp. [cm; 0 to 1000; default 4]
 ---@field clamped? boolean # True when roots keep their direction; otherwise strands hang from their roots as from a hinge. [default true]
 ---@field collide? boolean # True when hair keeps out of the head. [default true]

@@ -14,7 +14,7 @@ local hair = head:scalp()
     lay_from = head:at("forehead", { 0, -1, 3 }), lay_amount = 0.85 }
   :grow {}
   :settle {
-    hold = 4, limit = 10, drag = 14, rest_speed = 4,
+    hold = 4, drag = 14, rest_speed = 2,
     forces = {
       coif.force.gravity {},
       coif.force.attractor {

@@ -23,7 +23,7 @@ local hair = head:scalp():parting { head:at("forehead"), head:at("vertex") }
   :guides { count = p.guides, length = 40, length_variation = 0.1, step = 1.5, stiffness = 1.5,
     lay_from = head:at("vertex", { 0, 1, 3 }), lay_amount = 0.85 }
   :grow {}
-  :settle { hold = 4, limit = 10, drag = 40, rest_speed = 8, forces = forces }
+  :settle { hold = 4, forces = forces }
   :fill { strands = p.strands, clump = 0.25, clump_start = 0.3, thickness = 0.6, material = looks.brown }
 
 return coif.scene { head, hair, views = { "front", "three-quarter", "left", "back" } }

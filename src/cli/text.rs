@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::export::PartMotion;
 use crate::render::sheet::grouped;
-use crate::script::{Origin, Outcome};
+use crate::script::{Origin, Outcome, Rest};
 use crate::workbench::{Report, Stage, Written};
 
 /// For people: parts, times, files.
@@ -57,6 +57,19 @@ pub fn summary(report: &Report, written: &[Written], timings: bool) -> String {
     }
     for motion in &report.motions {
         let _ = writeln!(out, "{:>8}  {}: {}", "moves", motion.part, moved(motion));
+    }
+    for rest in &report.outcome.rests {
+        let Rest { source, strands, moving, seconds, steps } = rest;
+        let (strands, steps) = (grouped(*strands), grouped(*steps));
+        let _ = match moving {
+            0 => writeln!(out, "{:>8}  all {strands} strands after {seconds:.1} s, {steps} steps, at {source}", "rest"),
+            _ => writeln!(
+                out,
+                "{:>8}  {} of {strands} strands still moved at the limit of {seconds:.1} s, {steps} steps, at {source}",
+                "rest",
+                grouped(*moving)
+            ),
+        };
     }
     let stage = |s: &Stage| match s.origin {
         Some(Origin::Hit) => format!("{} {} (hit)", s.what, milliseconds(s.time)),
@@ -125,6 +138,7 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "parts": report.figures,
         "ms": stages,
         "calls": calls,
+        "rests": rests(&report.outcome),
         "files": files,
         "budget": report.budget.map(|b| json!({
             "before": b.before, "after": b.after, "lowered": b.lowered, "tufts": b.tufts, "pieces": b.pieces, "tolerance_cm": b.tolerance,
@@ -136,6 +150,17 @@ pub fn stats(report: &Report, written: &[Written]) -> String {
         "warnings": report.outcome.diagnostics.len(),
     });
     format!("{object}\n")
+}
+
+/// How strands came to rest, for programs.
+pub fn rests(outcome: &Outcome) -> Value {
+    let rest = |r: &Rest| {
+        json!({
+            "source": r.source, "strands": r.strands, "moving": r.moving, "seconds": (f64::from(r.seconds) * 1e3).round() / 1e3,
+            "steps": r.steps,
+        })
+    };
+    outcome.rests.iter().map(rest).collect()
 }
 
 /// Milliseconds with two decimals.

@@ -141,6 +141,14 @@ impl Acting<'_> {
     /// Adds its acceleration at eight places, cm/s^2.
     #[inline(always)]
     pub fn add(&self, at: &[Lanes; 3], out: &mut [Lanes; 3]) {
+        if let (Shape::Even(a), None) = (&self.shape, &self.zone) {
+            for l in 0..LANES {
+                out[0][l] += a.x;
+                out[1][l] += a.y;
+                out[2][l] += a.z;
+            }
+            return;
+        }
         let weight = self.zone.as_ref().map_or([1.0; LANES], |zone| inside(zone, self.fade, at));
         match &self.shape {
             Shape::Even(a) => {

@@ -3,6 +3,45 @@
 
 use glam::Vec3;
 
+/// The three parts of a vector, each made by itself. A macro, as `map` over an array is a call, which is not always built
+/// into the vector code around it.
+macro_rules! three {
+    ($c:ident => $make:expr) => {
+        [
+            {
+                let $c = 0_usize;
+                $make
+            },
+            {
+                let $c = 1_usize;
+                $make
+            },
+            {
+                let $c = 2_usize;
+                $make
+            },
+        ]
+    };
+}
+
+/// The same for what has two parts.
+macro_rules! two {
+    ($i:ident => $make:expr) => {
+        [
+            {
+                let $i = 0_usize;
+                $make
+            },
+            {
+                let $i = 1_usize;
+                $make
+            },
+        ]
+    };
+}
+
+pub(super) use {three, two};
+
 /// Strands that are worked on together.
 pub const LANES: usize = 8;
 

@@ -16,7 +16,7 @@
 //! farther than a segment in a step: where a strand is more taut than that, and where it turns far in a step, its own
 //! directions d are taken instead, which is always stable and loses energy.
 
-use super::lanes::{LANES, Lanes, Plane, dot, each, minus, scaled};
+use super::lanes::{LANES, Lanes, Plane, dot, each, minus, scaled, three};
 
 /// The greatest mu at which the directions of the beginning of a step are taken: the square of the part of a segment that
 /// a wave along the strand runs in a step. At 1 it would be unstable.
@@ -50,7 +50,7 @@ impl Memory {
             let (d, e) = (minus(&at.row(k), &at.row(k - 1)), minus(&before.row(k), &before.row(k - 1)));
             let (turned, square, was) = (dot(&d, &e), dot(&d, &d), dot(&e, &e));
             for l in 0..LANES {
-                let is_far = turned[l] < 0.0 || turned[l] * turned[l] < 0.9 * square[l] * was[l];
+                let is_far = (turned[l] < 0.0) | (turned[l] * turned[l] < 0.9 * square[l] * was[l]);
                 self.own[l] = if is_far { 1.0 } else { self.own[l] };
             }
         }
@@ -67,6 +67,18 @@ fn factor<const ROOT_FREE: bool>(square: &Lanes, rest: &Lanes) -> Lanes {
     };
     // A segment that has nearly vanished is opened in steps.
     each(|l| f[l].max(-2.0))
+}
+
+/// The vector of segment `k`.
+#[inline(always)]
+fn segment(at: &Plane, k: usize) -> [Lanes; 3] {
+    minus(&at.row(k), &at.row(k - 1))
+}
+
+/// `a` where `which` is above 0, and `b` elsewhere.
+#[inline(always)]
+fn either(which: &Lanes, a: &[Lanes; 3], b: &[Lanes; 3]) -> [Lanes; 3] {
+    three!(c => each(|l| if which[l] > 0.0 { a[c][l] } else { b[c][l] }))
 }
 
 /// One round of corrections, one segment after the other.
@@ -108,20 +120,15 @@ pub fn chain<const ROOT_FREE: bool>(
     if nodes < 2 {
         return most;
     }
-    let segment = |at: &Plane, k: usize| minus(&at.row(k), &at.row(k - 1));
     let own_way = memory.own;
-    let direction = |d: &[Lanes; 3], k: usize| {
-        let e = segment(before, k);
-        [0, 1, 2].map(|c| each(|l| if own_way[l] > 0.0 { d[c][l] } else { e[c][l] }))
-    };
     let mut d = segment(at, 1);
-    let mut e = direction(&d, 1);
+    let mut e = either(&own_way, &d, &segment(before, 1));
     let mut e_before = [[0.0; LANES]; 3];
     let (mut upper_before, mut right_before) = ([0.0; LANES], [0.0; LANES]);
     for k in 1..nodes {
         let last = k + 1 == nodes;
         let d_next = if last { d } else { segment(at, k + 1) };
-        let e_next = if last { e } else { direction(&d_next, k + 1) };
+        let e_next = if last { e } else { either(&own_way, &d_next, &segment(before, k + 1)) };
         let (w0, w1, r) = (&free[k - 1], &free[k], &rest[k]);
         let square = dot(&d, &d);
         let f = factor::<ROOT_FREE>(&square, r);
@@ -175,7 +182,7 @@ pub const NEAR: f32 = 0.005;
 /// Most such rounds.
 pub const MORE: usize = 6;
 /// How far it may be after them before all of the strand is laid again.
-pub const LOOSE: f32 = 0.05;
+pub const LOOSE: f32 = 0.01;
 
 /// 1 for the lanes in which a segment is off its length by more than a part `by`.
 #[inline(always)]
@@ -185,12 +192,13 @@ pub fn off(at: &Plane, free: &[Lanes], rest: &[Lanes], by: f32) -> Lanes {
     for k in 1..free.len() {
         let d = minus(&at.row(k), &at.row(k - 1));
         let square = dot(&d, &d);
-        for l in 0..LANES {
-            let r = rest[k][l] * rest[k][l];
-            // Written so that NaN is off.
-            let is_near = square[l] >= low * r && square[l] <= high * r;
-            which[l] = which[l].max(if is_near { 0.0 } else { free[k][l] });
-        }
+        let r = &rest[k];
+        // Written so that NaN is off.
+        let is_off = each(|l| {
+            let r = r[l] * r[l];
+            if (square[l] >= low * r) & (square[l] <= high * r) { 0.0 } else { 1.0 }
+        });
+        which = each(|l| which[l].max(is_off[l] * free[k][l]));
     }
     which
 }

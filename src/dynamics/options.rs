@@ -31,7 +31,7 @@ crate::params! {
     pub struct HairOptions("Strands:simulate") {
         /// What acts on the hair; the earth's gravity when left out.
         forces: Option<Vec<Arc<Force>>>;
-        /// How strongly the air brakes hair: the part of its speed that it loses in a second, at first. 10 in `settle`
+        /// How strongly the air brakes hair: the part of its speed that it loses in a second, at first. 2 in `settle`
         /// and 3 in `simulate` when left out.
         drag: Option<f32>, unit("1/s"), range(0.0, 1000.0);
         /// How well hair keeps its shape: a strand of this length that sticks out level sags by a tenth of it under its

@@ -42,6 +42,12 @@ pub struct Packet {
     pub taut: Lanes,
     /// Where the nodes were when their way was last looked at.
     pub mark: Plane,
+    /// While hair settles: the square of all velocities of each strand in the last step, and steps since it last stopped.
+    pub swing: [Lanes; 2],
+    /// While hair settles: how often in a row each strand was calm.
+    pub calm: [usize; LANES],
+    /// Whether it is at rest.
+    pub rests: [bool; LANES],
 }
 
 /// No strand.
@@ -49,6 +55,11 @@ pub const NONE: u32 = u32::MAX;
 
 /// The mean curvature of heads, 1/cm: how far a segment's middle lies below its ends.
 const ROUND: f32 = 1.0 / 8.0;
+
+/// Looks in a row after which a strand that was calm in all of them is at rest.
+const CALM: usize = 3;
+/// The same for one that trembles.
+const PATIENT: usize = 8;
 
 /// What packets are made with.
 #[derive(Clone, Copy, Debug)]
@@ -99,23 +110,7 @@ impl Packet {
         indices[..some.len()].copy_from_slice(some);
         let counts = indices.map(|i| if i == NONE { 0 } else { strands.range(i as usize).len() });
         let nodes = counts.into_iter().max().unwrap_or(0);
-        let mut packet = Self {
-            strands: indices,
-            counts,
-            nodes,
-            at: Plane::new(nodes),
-            velocity: Plane::new(nodes),
-            home: Plane::new(nodes),
-            free: vec![[0.0; LANES]; nodes],
-            is_held: vec![true; nodes],
-            rest: vec![[0.0; LANES]; nodes],
-            bend: None,
-            margin: vec![[0.0; LANES]; nodes],
-            clear: vec![[0.0; LANES]; nodes],
-            push: Plane::new(if making.repels { nodes } else { 0 }),
-            taut: [0.0; LANES],
-            mark: Plane::new(nodes),
-        };
+        let mut packet = Self { strands: indices, counts, ..Self::empty(nodes, making.repels) };
         for (l, &i) in indices.iter().enumerate() {
             if i != NONE {
                 packet.place(l, strands.strand(i as usize), making);
@@ -151,10 +146,113 @@ impl Packet {
         }
     }
 
+    /// Strands of other packets, each given by its lane, side by side in one: no more than eight.
+    fn regrouped(some: &[(&Self, usize)]) -> Self {
+        let nodes = some.iter().map(|(p, _)| p.nodes).max().unwrap_or(0);
+        let has_push = some.iter().any(|(p, _)| !p.push.x.is_empty());
+        let mut packet = Self::empty(nodes, has_push);
+        for (l, &(from, lane)) in some.iter().enumerate() {
+            packet.strands[l] = from.strands[lane];
+            packet.counts[l] = from.counts[lane];
+            packet.taut[l] = from.taut[lane];
+            packet.calm[l] = from.calm[lane];
+            packet.rests[l] = from.rests[lane];
+            for i in 0..2 {
+                packet.swing[i][l] = from.swing[i][lane];
+            }
+            // Idle nodes lie at the tip.
+            let last = from.counts[lane] - 1;
+            for k in 0..nodes {
+                let is_idle = k > last;
+                let k_from = k.min(last);
+                packet.at.set(k, l, from.at.get(k_from, lane));
+                packet.home.set(k, l, from.home.get(k_from, lane));
+                packet.mark.set(k, l, from.mark.get(k_from, lane));
+                if !is_idle {
+                    packet.velocity.set(k, l, from.velocity.get(k, lane));
+                    packet.free[k][l] = from.free[k][lane];
+                    packet.rest[k][l] = from.rest[k][lane];
+                    packet.margin[k][l] = from.margin[k][lane];
+                    packet.clear[k][l] = from.clear[k][lane];
+                    if has_push {
+                        packet.push.set(k, l, from.push.get(k, lane));
+                    }
+                }
+            }
+        }
+        for k in 0..nodes {
+            packet.is_held[k] = packet.free[k].contains(&0.0);
+        }
+        let bends: Vec<_> =
+            some.iter().filter_map(|&(p, lane)| Some((p.bend.as_ref()?, lane, p.counts[lane]))).collect();
+        packet.bend = Bend::regrouped(&bends, nodes);
+        packet
+    }
+
+    /// No strand.
+    fn empty(nodes: usize, has_push: bool) -> Self {
+        Self {
+            strands: [NONE; LANES],
+            counts: [0; LANES],
+            nodes,
+            at: Plane::new(nodes),
+            velocity: Plane::new(nodes),
+            home: Plane::new(nodes),
+            free: vec![[0.0; LANES]; nodes],
+            is_held: vec![true; nodes],
+            rest: vec![[0.0; LANES]; nodes],
+            bend: None,
+            margin: vec![[0.0; LANES]; nodes],
+            clear: vec![[0.0; LANES]; nodes],
+            push: Plane::new(if has_push { nodes } else { 0 }),
+            taut: [0.0; LANES],
+            mark: Plane::new(nodes),
+            swing: [[0.0; LANES]; 2],
+            calm: [0; LANES],
+            rests: [false; LANES],
+        }
+    }
+
+    /// Looks how far each strand has come from where it was marked. One that has stayed within `way` is calm, and at rest
+    /// after [`CALM`] looks; one that trembles about a place may go twice as far in the end, and is at rest after
+    /// [`PATIENT`]. Any other is marked anew. Gives the greatest way of all.
+    pub fn look(&mut self, way: f32) -> f32 {
+        let mut most = 0.0_f32;
+        for l in 0..LANES {
+            if self.strands[l] == NONE {
+                continue;
+            }
+            let far = (0..self.counts[l]).map(|k| self.at.get(k, l).distance_squared(self.mark.get(k, l)));
+            let far = far.fold(0.0, f32::max).sqrt();
+            most = most.max(far);
+            let patience = self.calm[l] as f32 / PATIENT as f32;
+            if far <= way * (1.0 + patience) {
+                self.calm[l] += 1;
+                self.rests[l] = self.calm[l] >= PATIENT || (self.calm[l] >= CALM && far <= way);
+            } else {
+                (self.calm[l], self.rests[l]) = (0, false);
+                for k in 0..self.counts[l] {
+                    self.mark.set(k, l, self.at.get(k, l));
+                }
+            }
+        }
+        most
+    }
+
     /// Where a strand is now: its lane and the nodes.
     pub fn each_strand(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         let some = self.strands.iter().zip(self.counts).enumerate();
         some.filter(|(_, (i, _))| **i != NONE).map(|(l, (i, count))| (l, *i as usize, count))
+    }
+}
+
+/// Puts what strands are left side by side again when many places are empty. What a strand does depends on its own numbers
+/// only, so this changes no bit of it.
+pub fn regroup(packets: &mut Vec<Packet>) {
+    let left: Vec<(&Packet, usize)> = packets.iter().flat_map(|p| p.each_strand().map(move |(l, ..)| (p, l))).collect();
+    if 4 * left.len() < 3 * LANES * packets.len() {
+        let fewer: Vec<Packet> = left.par_chunks(LANES).map(Packet::regrouped).collect();
+        *packets = fewer;
     }
 }
 

@@ -6,6 +6,7 @@ use glam::Affine3A;
 
 use super::error::{DynamicsError, check_value};
 use super::finish::{finish, frame};
+use super::packet::unpack;
 use super::pose::Poses;
 use super::world::{Hair, Plan, World};
 use crate::geometry::{Clip, Strands};
@@ -61,14 +62,18 @@ pub struct Settled {
     pub strands: Strands,
     /// Simulated time until they were at rest, s; none when they were not.
     pub rested: Option<f32>,
+    /// Simulated time in all, s.
+    pub time: f32,
+    /// Steps in all.
+    pub steps: usize,
+    /// Strands that still moved at the end.
+    pub moving: usize,
     /// The greatest speed of a node at the end, cm/s.
     pub speed: f32,
 }
 
 /// Steps between two looks at how fast hair is.
 const LOOK: usize = 24;
-/// How often in a row it must be slow.
-const CALM: usize = 2;
 
 /// Moves strands until they are at rest or the limit is reached; a warning tells of the latter.
 ///
@@ -85,30 +90,37 @@ pub fn settle(hair: &Hair, options: &SettleOptions, task: &Task) -> Result<Warne
         poses: &poses,
         is_loop: false,
         is_settling: true,
-        drag: hair.options.drag.unwrap_or(10.0),
+        drag: hair.options.drag.unwrap_or(2.0),
         is_balanced: false,
         is_loose: false,
     };
     let acting = hair.options.acting();
     let mut world = World::new(*hair, plan, &acting)?;
-    world.moved();
-    let (mut calm, mut speed) = (0, f32::MAX);
-    while calm < CALM && world.time() < options.limit {
+    let mut strands = hair.strands.clone();
+    let way = options.rest_speed * LOOK as f32 * step;
+    let mut moved = world.rest(0.0, &mut strands.points);
+    while world.moving() > 0 && world.time() < options.limit {
         task.progress("settling", world.time() / options.limit);
         world.advance(LOOK, task)?;
-        speed = world.moved() / (LOOK as f32 * step);
-        calm = if speed < options.rest_speed { calm + 1 } else { 0 };
+        moved = world.rest(way, &mut strands.points);
     }
     task.progress("settling", 1.0);
-    let time = world.time();
-    let (strands, stuck) = frame(hair, &world.packets, &Affine3A::IDENTITY);
+    let (time, moving) = (world.time(), world.moving());
+    let speed = moved / (LOOK as f32 * step);
+    unpack(&world.packets, &hair.strands.offsets, &mut strands.points);
+    let stuck = finish(hair, &mut strands, &Affine3A::IDENTITY);
     let mut warnings = stuck_warning(stuck, strands.count());
-    if calm < CALM {
-        let message = format!("hair still moved at up to `{speed:.1}` cm/s after {} s", options.limit);
+    if moving > 0 {
+        let (count, limit) = (strands.count(), options.limit);
+        let message =
+            format!("hair still moved at up to `{speed:.1}` cm/s after {limit} s: {moving} of {count} strands");
         warnings
             .push(Warning::new(message).hint("raise `limit` or `drag`; a force that never balances keeps it moving"));
     }
-    Ok(Warned { value: Settled { strands, rested: (calm >= CALM).then_some(time), speed }, warnings })
+    Ok(Warned {
+        value: Settled { strands, rested: (moving == 0).then_some(time), time, steps: world.steps(), moving, speed },
+        warnings,
+    })
 }
 
 /// Moves strands for a time and keeps every frame, the first of which is the strands as they are. With a motion the

@@ -16,7 +16,7 @@ use multiversion::multiversion;
 
 use super::acting::Acting;
 use super::bend::Factors;
-use super::lanes::{LANES, Lanes, Plane, each};
+use super::lanes::{LANES, Lanes, Plane, dot, each, three};
 use super::length::{self, Memory};
 use super::options::{Lengths, Solver};
 use super::packet::Packet;
@@ -39,6 +39,8 @@ pub struct Rules<'a> {
     pub skin: Option<&'a Skin>,
     /// Of hair on skin.
     pub friction: f32,
+    /// Whether a strand stops where it is fastest: hair is to come to rest. The least number of steps between stops.
+    pub stops: Option<usize>,
 }
 
 /// One step of all strands.
@@ -80,7 +82,7 @@ pub fn advance(packet: &mut Packet, moments: &[Moment], rules: &Rules, scratch: 
         if let Some(bend) = bend {
             let m = moment.to.matrix3;
             let turn = [m.x_axis.to_array(), m.y_axis.to_array(), m.z_axis.to_array()];
-            bend.apply(at, (free, rest), &turn, &mut scratch.force, &mut scratch.factors);
+            bend.apply(at, (free, rest), &turn, &scratch.force, &mut scratch.factors);
         }
         if matches!(rules.solver, Solver::Chain) {
             scratch.memory.look(at, &scratch.before, taut);
@@ -117,6 +119,31 @@ pub fn advance(packet: &mut Packet, moments: &[Moment], rules: &Rules, scratch: 
         ] {
             for (v, (a, b)) in v.iter_mut().zip(a.iter().zip(b)) {
                 *v = each(|l| (a[l] - b[l]) * one_over);
+            }
+        }
+        if let Some(gap) = rules.stops {
+            stop(packet, gap);
+        }
+    }
+}
+
+/// Stops the strands that have just become slower: where a swing is fastest it passes the place of rest.
+#[inline(always)]
+fn stop(packet: &mut Packet, gap: usize) {
+    let Packet { velocity, swing, .. } = packet;
+    let mut now = [0.0; LANES];
+    for k in 0..velocity.x.len() {
+        let v = velocity.row(k);
+        let square = dot(&v, &v);
+        now = each(|l| now[l] + square[l]);
+    }
+    let [before, since] = *swing;
+    let stops = each(|l| if (now[l] < before[l]) & (since[l] >= gap as f32) { 1.0 } else { 0.0 });
+    *swing = [each(|l| now[l] * (1.0 - stops[l])), each(|l| (since[l] + 1.0) * (1.0 - stops[l]))];
+    if stops != [0.0; LANES] {
+        for v in [&mut velocity.x, &mut velocity.y, &mut velocity.z] {
+            for v in v {
+                *v = each(|l| if stops[l] > 0.0 { 0.0 } else { v[l] });
             }
         }
     }
@@ -158,9 +185,9 @@ fn drift(packet: &mut Packet, moment: &Moment, rules: &Rules, scratch: &mut Scra
             force.add(&at, &mut a);
         }
         let v = packet.velocity.row(k);
-        let mut next = [0, 1, 2].map(|c| each(|l| at[c][l] + h * (v[c][l] * rules.kept)));
+        let mut next = three!(c => each(|l| at[c][l] + h * (v[c][l] * rules.kept)));
         if bends {
-            scratch.force.put(k, a.map(|a| each(|l| h * kick * a[l])));
+            scratch.force.put(k, three!(c => each(|l| h * kick * a[c][l])));
         } else {
             for c in 0..3 {
                 for l in 0..LANES {

@@ -9,8 +9,9 @@ use super::acting::Forces;
 use super::bend;
 use super::error::DynamicsError;
 use super::force::{Field, Force, Zone};
+use super::lanes::LANES;
 use super::options::HairOptions;
-use super::packet::{Making, Packet, check_segments, pack};
+use super::packet::{Making, NONE, Packet, check_segments, pack, regroup};
 use super::pose::Poses;
 use super::repel::Repulsion;
 use super::skin::Skin;
@@ -78,6 +79,9 @@ pub struct World<'a> {
     corners: Vec<Vec3>,
     done: usize,
 }
+
+/// While hair settles: least time between two stops of a strand, s.
+const SWING: f32 = 0.1;
 
 /// Steps after which crowding is looked at again.
 const REFRESH: usize = 4;
@@ -148,6 +152,7 @@ impl<'a> World<'a> {
                 solver: options.solver,
                 skin: hair.body.filter(|_| options.collide).map(|b| b.skin),
                 friction: options.friction,
+                stops: plan.is_settling.then(|| (SWING / plan.step).round() as usize),
             },
             repulsion: (options.repulsion > 0.0).then(|| Repulsion::new(options.repulsion, options.spacing)),
             corners: (0..8).map(corner).collect(),
@@ -264,20 +269,39 @@ impl<'a> World<'a> {
         Ok(())
     }
 
-    /// The greatest way of any node since it was last asked for, cm.
-    pub fn moved(&mut self) -> f32 {
-        let moved = self.packets.par_iter_mut().map(|packet| {
-            let mut most = 0.0_f32;
-            for (l, _, count) in packet.each_strand() {
-                for k in 0..count {
-                    most = most.max(packet.at.get(k, l).distance_squared(packet.mark.get(k, l)));
+    /// Looks for strands at rest, see [`Packet::look`]. They are laid into `points` as they are and move no more; but while
+    /// hair repels all of it has to be at rest together. Gives the greatest way of any strand since it was marked.
+    pub fn rest(&mut self, way: f32, points: &mut [Vec3]) -> f32 {
+        let moved = self.packets.par_iter_mut().map(|packet| packet.look(way)).reduce(|| 0.0, f32::max);
+        let is_calm = |p: &Packet, l: usize| p.rests[l];
+        let all = || self.packets.iter().all(|p| p.each_strand().all(|(l, ..)| is_calm(p, l)));
+        if self.repulsion.is_some() && !all() {
+            return moved;
+        }
+        let offsets = &self.hair.strands.offsets;
+        for packet in &mut self.packets {
+            for l in 0..LANES {
+                if packet.strands[l] != NONE && is_calm(packet, l) {
+                    let start = offsets[packet.strands[l] as usize] as usize;
+                    for k in 0..packet.counts[l] {
+                        points[start + k] = packet.at.get(k, l);
+                    }
+                    packet.strands[l] = NONE;
                 }
             }
-            let Packet { at, mark, .. } = packet;
-            mark.copy(at);
-            most
-        });
-        moved.reduce(|| 0.0, f32::max).sqrt()
+        }
+        regroup(&mut self.packets);
+        moved
+    }
+
+    /// How many steps are done.
+    pub fn steps(&self) -> usize {
+        self.done
+    }
+
+    /// How many strands still move.
+    pub fn moving(&self) -> usize {
+        self.packets.iter().map(|p| p.each_strand().count()).sum()
     }
 }
 

@@ -11,7 +11,7 @@ use mlua::{Lua, MultiValue};
 use super::convert::Reading;
 use super::files::Files;
 use super::sandbox::{Deadline, Interruptible};
-use super::session::{Raised, Session, Thinned, Timing};
+use super::session::{Raised, Rest, Session, Thinned, Timing};
 use super::{Diagnostic, Limits, Memo, Parameter, Sources, bind, protect, sandbox, trace};
 use crate::head::load::Unit;
 use crate::params::Value;
@@ -117,6 +117,8 @@ pub struct Outcome {
     pub sources: Sources,
     /// Calls that took half a millisecond or more, or whose value the memo keeps, in order.
     pub timings: Vec<Timing>,
+    /// How strands that were let settle came to rest, in order.
+    pub rests: Vec<Rest>,
     /// What a draft has left out.
     pub thinned: Thinned,
 }
@@ -147,6 +149,7 @@ pub(super) fn run_session(session: &Rc<Session>) -> Outcome {
         dependencies: session.access.asked(),
         sources: session.sources.take(),
         timings: session.timings.take(),
+        rests: session.rests.take(),
         thinned: session.thinned.take(),
     }
 }

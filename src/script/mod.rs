@@ -35,7 +35,7 @@ pub use files::{Access, AccessError, Disk, Files, Memory};
 pub use host::{Ending, Options, Outcome, SetBy, run};
 pub use limits::Limits;
 pub use memo::{Kept, Memo, Origin};
-pub use session::{Thinned, Timing};
+pub use session::{Rest, Thinned, Timing};
 pub use show::{show, show_all};
 pub use source::Sources;
 pub use testing::{Declared, Preview, TestOutcome, run_test};

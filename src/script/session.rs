@@ -62,6 +62,21 @@ pub struct Timing {
     pub origin: Option<Origin>,
 }
 
+/// How strands that were let settle came to rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rest {
+    /// Where they were: `bundle.lua:16`.
+    pub source: String,
+    /// How many they are.
+    pub strands: usize,
+    /// How many of them still moved when the limit was reached; 0 when all came to rest.
+    pub moving: usize,
+    /// Simulated time until then, s.
+    pub seconds: f32,
+    /// Steps until then.
+    pub steps: usize,
+}
+
 /// What a draft leaves out; in any other run nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Thinned {
@@ -93,6 +108,8 @@ pub struct Session {
     pub parameters: RefCell<Vec<Parameter>>,
     /// Calls that took time, in order.
     pub timings: RefCell<Vec<Timing>>,
+    /// How strands came to rest, in order.
+    pub rests: RefCell<Vec<Rest>>,
     /// What all calls so far have made or are about to make.
     pub claimed: Cell<Need>,
     /// What a draft has left out so far.
@@ -125,6 +142,7 @@ impl Session {
             logged: Cell::new(0),
             parameters: RefCell::default(),
             timings: RefCell::default(),
+            rests: RefCell::default(),
             claimed: Cell::default(),
             thinned: Cell::default(),
             heads: RefCell::default(),

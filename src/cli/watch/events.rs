@@ -63,6 +63,7 @@ pub fn good(event: &str, report: &Report, written: &[Written]) -> Value {
     }
     if event == "finished" {
         object["parts"] = json!(report.figures);
+        object["rests"] = text::rests(&report.outcome);
         object["warnings"] = diagnostics(&report.outcome.diagnostics);
         object["log"] = json!(report.outcome.log);
     }

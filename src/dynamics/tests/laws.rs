@@ -140,7 +140,7 @@ fn both_forms_settle_in_the_same_place() {
         // A strand that stands upright may fall to either side, and on the skin rest before or behind a bump.
         let mut sorted = far.clone();
         sorted.sort_by(f32::total_cmp);
-        assert!(sorted[20] < 0.05 && sorted[29] < 0.2 && sorted[39] < 6.0, "{far:?}");
+        assert!(sorted[29] < 0.05 && sorted[34] < 0.2 && sorted[39] < 2.0, "{far:?}");
     }
 }
 
@@ -259,8 +259,6 @@ fn threads_change_no_byte() {
         let options = HairOptions { repulsion: 0.0, ..options.clone() };
         settled(&start, &options, None).strands.strand(0).to_vec()
     };
-    let hair = HairOptions { repulsion: 0.0, ..options.clone() };
-    assert_eq!(hair.repulsion, 0.0);
     let (few, many) = (alone(1), alone(17));
-    assert!(few.iter().zip(&many).all(|(a, b)| a.distance(*b) < 0.3), "at rest at another time, but in one place");
+    assert_eq!(few, many);
 }

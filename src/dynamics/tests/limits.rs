@@ -86,9 +86,14 @@ fn what_never_rests_says_so() {
     options.drag = Some(0.0);
     options.hold = 0.0;
     let hair = Hair { strands: &start, options: &options, pinned: &[], body: None };
-    let out = settle(&hair, &SettleOptions { limit: 0.5, rest_speed: 0.1 }, &Task::new()).unwrap();
-    assert!(out.value.rested.is_none() && out.value.speed > 1.0);
+    let run = |limit: f32| settle(&hair, &SettleOptions { limit, rest_speed: 0.1 }, &Task::new()).unwrap();
+    let out = run(0.2);
+    assert!(out.value.rested.is_none() && out.value.moving == 2 && out.value.speed > 1.0);
     assert!(out.warnings[0].message.starts_with("hair still moved at up to"), "{:?}", out.warnings);
+    // It stops where it is fastest, so that limp hair without air comes to rest as well.
+    let out = run(20.0);
+    assert!(out.value.rested == Some(out.value.time) && out.value.moving == 0 && out.warnings.is_empty());
+    assert!((out.value.steps as f32 / 240.0 - out.value.time).abs() < 1e-4);
 }
 
 /// Whatever passes the checks stays finite and whole.

@@ -6,7 +6,7 @@ use super::super::call::{Call, Result};
 use super::super::limits::Need;
 use super::super::memo::Kept;
 use super::super::registry::Entry;
-use super::super::session::Raised;
+use super::super::session::{Raised, Rest};
 use super::clip::MovingStrands;
 use super::force::Place;
 use super::head::give;
@@ -51,6 +51,12 @@ pub fn methods() -> Vec<Entry> {
             simulate_strands,
         ),
     ]
+}
+
+impl Kept for Rest {
+    fn bytes(&self) -> usize {
+        size_of::<Self>()
+    }
 }
 
 impl Kept for Skin {
@@ -114,14 +120,27 @@ fn settle_strands(call: &Call) -> Result<Value> {
     for strands in parts(&this) {
         let points = strands.points.len() as u64;
         call.claim("", Need { points, ..Need::strands(strands.count(), 0) })?;
-        let mut key = Digest::new("settle 1");
+        let mut key = Digest::new("settle 2");
         key.data(&own);
         moved.digest(call, &this, strands, &mut key);
+        let mut rest = Rest { source: String::new(), strands: strands.count(), moving: 0, seconds: 0.0, steps: 0 };
         let make = || match settle(&moved.hair(&this, strands), &own, call.task()) {
-            Ok(Warned { value, warnings }) => Ok(Warned { value: value.strands, warnings }),
+            Ok(Warned { value, warnings }) => {
+                (rest.moving, rest.seconds, rest.steps) = (value.moving, value.time, value.steps);
+                Ok(Warned { value: value.strands, warnings })
+            }
             Err(e) => Err(problem(call, &e)),
         };
         out.push(call.memo_strands(&key, &strands.sources, make)?);
+        // Kept beside the strands, so that a run that finds these still tells how they came to rest.
+        let mut told = Digest::new("settle rest 1");
+        told.key(key.finish());
+        let kept = call.memo(&told, || Ok(Warned { value: rest, warnings: vec![] }))?;
+        // Without steps nothing is known: the memo had kept the strands only.
+        if kept.steps > 0 {
+            let source = call.source().to_string();
+            call.session.rests.borrow_mut().push(Rest { source, ..Rest::clone(&kept) });
+        }
     }
     let strands = Arc::clone(&out[0]);
     let guides = Arc::clone(&out[out.len() - 1]);
