@@ -23,6 +23,19 @@ pub struct Vertices {
     pub normals: Vec<Vec3>,
 }
 
+impl Vertices {
+    fn scaled(&self, by: f32) -> Self {
+        let scaled = |all: &[Vec3]| all.iter().map(|v| *v * by).collect();
+        Self { positions: scaled(&self.positions), normals: scaled(&self.normals) }
+    }
+
+    fn add(&mut self, other: &Self, times: f32) {
+        let add = |all: &mut [Vec3], more: &[Vec3]| all.iter_mut().zip(more).for_each(|(v, m)| *v += *m * times);
+        add(&mut self.positions, &other.positions);
+        add(&mut self.normals, &other.normals);
+    }
+}
+
 /// Shapes and what is mixed of them.
 #[derive(Clone, Debug, Default)]
 pub struct Basis {
@@ -35,6 +48,32 @@ pub struct Basis {
 }
 
 impl Basis {
+    /// The same mixtures with weights from 0 to 1 alone, for programs that know no others: a shape whose weight goes both
+    /// ways is counted from its least one, and one more shape, which comes first and stays at 1, makes up for that.
+    #[must_use]
+    pub fn with_weights_from_zero(mut self) -> Self {
+        let mut shift: Option<Vertices> = None;
+        for (k, shape) in self.shapes.iter_mut().enumerate() {
+            let of = |f: fn(f32, f32) -> f32| self.weights.iter().map(|w| w[k]).fold(0.0, f);
+            let (least, most) = (of(f32::min), of(f32::max));
+            if least == 0.0 {
+                continue;
+            }
+            let (from, scale) = if most == 0.0 { (0.0, -1.0) } else { (least, most - least) };
+            if from < 0.0 {
+                let sum = shift.get_or_insert_with(|| shape.scaled(0.0));
+                sum.add(shape, from);
+            }
+            *shape = shape.scaled(scale);
+            self.weights.iter_mut().for_each(|w| w[k] = ((w[k] - from) / scale).clamp(0.0, 1.0));
+        }
+        if let Some(shift) = shift {
+            self.shapes.insert(0, shift);
+            self.weights.iter_mut().for_each(|w| w.insert(0, 1.0));
+        }
+        self
+    }
+
     /// Per shape the farthest that it moves a vertex, cm.
     pub fn reaches(&self) -> Vec<f32> {
         self.shapes.iter().map(|s| s.positions.par_iter().map(|p| p.length()).reduce(|| 0.0, f32::max)).collect()
@@ -292,8 +331,13 @@ mod tests {
         let basis = basis(&rest, 60, at, 1e-3, &Task::new()).unwrap();
         assert_eq!(basis.shapes.len(), 2);
         assert!(basis.error <= 1e-3 && basis.weights.iter().flatten().all(|w| w.abs() <= 1.0));
+        // The same with weights from 0 to 1, of one shape more.
+        let positive = basis.clone().with_weights_from_zero();
+        assert!(basis.weights.iter().flatten().any(|w| *w < -0.1) && positive.shapes.len() == 3);
+        assert!(positive.weights.iter().flatten().all(|w| (0.0..=1.0).contains(w)));
         for f in 0..60 {
             assert!(error(&rest, &at(f).positions, &basis, f) <= basis.error);
+            assert!(error(&rest, &at(f).positions, &positive, f) <= basis.error + 1e-5);
         }
     }
 

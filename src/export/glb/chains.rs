@@ -624,14 +624,17 @@ fn best(offsets: &[Vec3], count: usize, each: usize) -> (Vec<usize>, Vec<f64>) {
     // Inner products with the active ones.
     let mut products: Vec<Vec<f64>> = vec![(0..count).map(|i| dot(first, i)).collect()];
     let enough = 1e-8 * each as f64;
+    let mut before = f64::INFINITY;
     while active.len() < FOLLOWED {
         let slope = |i: usize| products.iter().zip(&weights).map(|(p, w)| p[i] * w).sum::<f64>();
         let now: f64 = active.iter().zip(&weights).map(|(&i, w)| w * slope(i)).sum();
         let next = (0..count).filter(|i| !active.contains(i)).map(|i| (slope(i), i));
         let Some((least, next)) = next.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))) else { break };
-        if now <= enough || least >= now * (1.0 - 1e-3) {
+        // Rounding may have two candidates take each other's place for ever: every exchange has to be worth it.
+        if now <= enough || least >= now * (1.0 - 1e-3) || now >= before * (1.0 - 1e-6) || now.is_nan() {
             break;
         }
+        before = now;
         active.push(next);
         weights.push(0.0);
         products.push((0..count).map(|i| dot(next, i)).collect());

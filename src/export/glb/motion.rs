@@ -304,7 +304,7 @@ impl File<'_> {
     ) -> Result<(), Cancelled> {
         let (Some(film), Some(mesh)) = (&self.film, place.mesh) else { return Ok(()) };
         let (frames, count, rate) = (film.timeline.frames, film.moments(), film.timeline.rate);
-        let found: Basis = sampled.basis(rest, at, SHAPES * tolerance, task)?;
+        let found: Basis = sampled.basis(rest, at, SHAPES * tolerance, task)?.with_weights_from_zero();
         let before = self.plan.length();
         let Some(film) = &self.film else { return Ok(()) };
         let told = film.extras("shapes", 0, 0.0);
@@ -439,5 +439,6 @@ impl File<'_> {
 
 /// About the bytes that so many shapes take.
 fn shape_bytes(rest: &Vertices, shapes: usize, frames: usize) -> usize {
-    12 * shapes * (rest.positions.len() + rest.normals.len()) + 4 * shapes * frames
+    // One more for the weights that would go below 0.
+    12 * (shapes + 1) * (rest.positions.len() + rest.normals.len()) + 4 * shapes * frames
 }
