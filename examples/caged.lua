@@ -35,8 +35,8 @@ local straight = head:scalp():parting(parting)
 -- the control points: one above the crown, four at the ears, four at the shoulders, four below the tips
 local function spot(name, x, y, z, dx, dy)
   local at = vector.create(x, y, z)
-  local to = if dx == 0 and dy == 0 then nil else at + vector.create(dx, dy, 0)
-  return { name = name, at = at, to = to }
+  if dx == 0 and dy == 0 then return { name = name, at = at } end
+  return { name = name, at = at, to = at + vector.create(dx, dy, 0) }
 end
 
 local top, ear, shoulder = head:at("vertex", { 0, 8, 0 }), head:at("left_ear").y, head:at("chin").y - 6
@@ -44,7 +44,7 @@ local tips = head:at("nape").y - 42
 local points = { spot("crown", 0, top.y, 0, 0, p.crown) }
 for _, x in { 1, -1 } do
   for _, z in { 1, -1 } do
-    local corner = (if x > 0 then "left " else "right ") .. (if z > 0 then "front " else "back ")
+    local corner = (x > 0 and "left " or "right ") .. (z > 0 and "front " or "back ")
     table.insert(points, spot(corner .. "ear", 17 * x, ear, 18 * z, 0, 0))
     table.insert(points, spot(corner .. "shoulder", 30 * x, shoulder, 24 * z, -2 * x, 0))
     table.insert(points, spot(corner .. "tips", 34 * x, tips, 28 * z, p.tips, 0.2 * p.tips * x))

@@ -255,8 +255,21 @@ fn what_moves_with_the_head_costs_nothing_and_what_stays_is_sparse() {
     let accessor = &json["accessors"][target.as_u64().unwrap() as usize];
     let (count, all) = (accessor["sparse"]["count"].as_u64().unwrap(), accessor["count"].as_u64().unwrap());
     assert!(count < all / 2 && count > all / 8, "{count} of {all}");
-    // A flag that waves in one direction is one shape.
-    assert_eq!(json["meshes"][2]["weights"].as_array().unwrap().len(), 1);
+    // A flag that waves in one direction is one shape, and where it is counted from.
+    assert_eq!(json["meshes"][2]["weights"].as_array().unwrap().len(), 2);
+    // Programs hold weights between 0 and 1.
+    let file = gltf::Gltf::from_slice(&glb(&scene, &GlbOptions::default(), &Task::new()).unwrap()).unwrap();
+    let blob = file.blob.as_deref().unwrap();
+    let mut channels = 0;
+    for channel in file.document.animations().flat_map(|a| a.channels()) {
+        let reader = channel.reader(|_| Some(blob));
+        if let Some(gltf::animation::util::ReadOutputs::MorphTargetWeights(weights)) = reader.read_outputs() {
+            let weights: Vec<f32> = weights.into_f32().collect();
+            assert!(weights.iter().all(|w| (0.0..=1.0).contains(w)) && weights.contains(&0.0), "{weights:?}");
+            channels += 1;
+        }
+    }
+    assert_eq!(channels, 2);
     // Hair at rest on a head that turns: no shapes at all.
     let clip = match &scene.parts[0].motion {
         Some(Motion::Rigid(clip)) => clip.clone(),

@@ -13,6 +13,7 @@ local function at(azimuth, elevation, height)
 end
 
 -- Five rows from the nape up to the crown: elevation, how many, length, width, colour.
+---@type any
 local rows = {
   { -8, 14, 10.5, 3.7, "#4b2a63" },
   { 14, 13, 12.5, 4.1, "#5f2f74" },
@@ -22,10 +23,11 @@ local rows = {
 }
 local looks = {}
 for row, place in rows do
-  looks[row] = coif.material.tuft { colour = if row == 1 then p.roots else place[5], tip_colour = p.tips, shine = 0 }
+  looks[row] = coif.material.tuft { colour = row == 1 and p.roots or place[5], tip_colour = p.tips, shine = 0 }
 end
 
 -- Where the locks grow, from the head's left ear around the back to the right one, so that a gust can go along them.
+---@type any
 local places = {}
 for row, place in rows do
   for k = 0, place[2] - 1 do
@@ -33,12 +35,15 @@ for row, place in rows do
     table.insert(places, { azimuth = azimuth, row = row, length = place[3] * (1 - 0.07 * (k % 3)) })
   end
 end
-table.sort(places, function(a, b) return if a.azimuth ~= b.azimuth then a.azimuth < b.azimuth else a.row < b.row end)
+table.sort(places, function(a, b)
+  if a.azimuth ~= b.azimuth then return a.azimuth < b.azimuth end
+  return a.row < b.row
+end)
 
 -- A lock from its root over the skull and down; `push` moves its tip to the head's left, `lift` up and out.
 local function fall(place, push, lift)
   local azimuth, elevation, width = place.azimuth, rows[place.row][1], rows[place.row][4]
-  local below = math.min(elevation - 22, 6)
+  local below = math.min(elevation - 22, 6.0)
   local edge  = at(azimuth, below, 1.1 + 0.34 * place.row)
   local out   = vector.normalize(vector.create(edge.x, 0, edge.z))
   local points = {

@@ -694,3 +694,33 @@ fn solve(active: &[usize], products: &[Vec<f64>]) -> Option<Vec<f64>> {
     let sum: f64 = x.iter().sum();
     (sum.is_finite() && sum != 0.0).then(|| x.into_iter().map(|x| x / sum).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::rng::Key;
+
+    #[test]
+    fn the_best_mixture_ends_and_is_no_worse_than_the_best_one() {
+        // Candidates that are alike but for rounding, and some that are not: exchanges between them must come to an end.
+        for case in 0..2000_u64 {
+            let key = Key::new(case, "best");
+            let (count, each) = (2 + (case % 23) as usize, 1 + (case % 7) as usize);
+            let alike = 10_f32.powi(-(key.with(1).range(0.0, 9.0) as i32));
+            let base: Vec<Vec3> = (0..each as u64).map(|f| key.with(2).with(f).direction()).collect();
+            let offset = |i: usize, f: usize| {
+                let own = key.with(3).with(i as u64).with(f as u64).direction();
+                base[f] * key.with(4).with(i as u64 % 3).range(0.5, 1.5) + own * alike
+            };
+            let offsets: Vec<Vec3> =
+                (0..count).flat_map(|i| (0..each).map(move |f| (i, f))).map(|(i, f)| offset(i, f)).collect();
+            let (chosen, weights) = best(&offsets, count, each);
+            assert!(!chosen.is_empty() && chosen.len() <= FOLLOWED && chosen.len() == weights.len());
+            assert!(weights.iter().all(|w| *w >= -1e-9) && (weights.iter().sum::<f64>() - 1.0).abs() < 1e-6);
+            let length = |mix: &dyn Fn(usize) -> Vec3| (0..each).map(|f| mix(f).length_squared()).sum::<f32>();
+            let mixed = length(&|f| chosen.iter().zip(&weights).map(|(&i, &w)| offsets[i * each + f] * w as f32).sum());
+            let single = (0..count).map(|i| length(&|f| offsets[i * each + f])).fold(f32::INFINITY, f32::min);
+            assert!(mixed <= single * 1.001 + 1e-9, "{case}: {mixed} {single}");
+        }
+    }
+}
