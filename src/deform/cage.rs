@@ -10,7 +10,8 @@ use std::collections::BTreeMap;
 use glam::{DMat3, DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::kernel::{self, Limit};
+use super::controls::Controls;
+use super::kernel;
 use super::mean::{self, Shell};
 use super::shell::{self, Faces};
 use super::{DeformError, Folded, Move, PointKind, dense};
@@ -24,16 +25,11 @@ const PIECE: usize = 2048;
 /// A closed surface of control points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cage {
-    /// Control points where they were at first.
-    rest: Vec<Vec3>,
-    moves: Vec<Vec3>,
-    kinds: Vec<PointKind>,
+    controls: Controls,
     names: Vec<Option<String>>,
     /// Faces with three or more corners. A face with more has one more corner in its middle, which is no control point:
     /// it stands at the mean of the others.
     faces: Vec<Vec<u32>>,
-    held: Vec<Vec3>,
-    power: f32,
 }
 
 impl Cage {
@@ -75,35 +71,27 @@ impl Cage {
 
     fn of_faces(Faces { points, faces }: Faces) -> Self {
         let count = points.len();
-        Self {
-            rest: points,
-            moves: vec![Vec3::ZERO; count],
-            kinds: vec![PointKind::Overall; count],
-            names: vec![None; count],
-            faces,
-            held: vec![],
-            power: 2.0,
-        }
+        Self { controls: Controls::new(points), names: vec![None; count], faces }
     }
 
     /// How many control points there are.
     pub fn count(&self) -> usize {
-        self.rest.len()
+        self.controls.rest.len()
     }
 
     /// Where a control point was at first.
     pub fn rest(&self, index: usize) -> Vec3 {
-        self.rest[index]
+        self.controls.rest[index]
     }
 
     /// Where a control point stands now.
     pub fn place(&self, index: usize) -> Vec3 {
-        self.rest[index] + self.moves[index]
+        self.controls.place(index)
     }
 
     /// What a control point is for.
     pub fn kind(&self, index: usize) -> PointKind {
-        self.kinds[index]
+        self.controls.kinds[index]
     }
 
     /// The name of a control point.
@@ -113,7 +101,7 @@ impl Cage {
 
     /// Points of the object that are held.
     pub fn held(&self) -> &[Vec3] {
-        &self.held
+        &self.controls.held
     }
 
     /// The faces, anticlockwise as seen from outside.
@@ -123,7 +111,7 @@ impl Cage {
 
     /// True when no control point has moved.
     pub fn is_still(&self) -> bool {
-        self.moves.iter().all(|&m| m == Vec3::ZERO)
+        self.controls.is_still()
     }
 
     /// The number of a named control point.
@@ -142,9 +130,7 @@ impl Cage {
     /// With another kind for these control points.
     #[must_use]
     pub fn marked(mut self, points: &[u32], kind: PointKind) -> Self {
-        for &i in points {
-            self.kinds[i as usize] = kind;
-        }
+        self.controls.mark(points, kind);
         self
     }
 
@@ -153,8 +139,7 @@ impl Cage {
     /// # Errors
     /// When all of them are fixed, or one would end where numbers end.
     pub fn moved(self, points: &[u32], by: &Move) -> Result<Self, DeformError> {
-        let free: Vec<u32> = points.iter().copied().filter(|&i| self.is_free(i)).collect();
-        let middle = free.iter().map(|&i| self.place(i as usize)).sum::<Vec3>() / free.len().max(1) as f32;
+        let middle = self.controls.middle(points);
         self.placed(points, |_, p| by.of(p, middle))
     }
 
@@ -162,26 +147,9 @@ impl Cage {
     ///
     /// # Errors
     /// As [`Cage::moved`].
-    pub fn placed(mut self, points: &[u32], mut place: impl FnMut(u32, Vec3) -> Vec3) -> Result<Self, DeformError> {
-        if !points.is_empty() && !points.iter().any(|&i| self.is_free(i)) {
-            return Err(DeformError::AllFixed { count: points.len() });
-        }
-        for &i in points.iter().filter(|&&i| self.kinds[i as usize] != PointKind::Fixed) {
-            let now = self.place(i as usize);
-            let value = place(i, now);
-            if !value.is_finite() {
-                let what = format!("the place of {}", called(&self.names, i as usize));
-                return Err(DeformError::NotFinite { what, value });
-            }
-            if value != now {
-                self.moves[i as usize] = value - self.rest[i as usize];
-            }
-        }
+    pub fn placed(mut self, points: &[u32], place: impl FnMut(u32, Vec3) -> Vec3) -> Result<Self, DeformError> {
+        self.controls.put(points, |i| called(&self.names, i), place)?;
         Ok(self)
-    }
-
-    fn is_free(&self, index: u32) -> bool {
-        self.kinds[index as usize] != PointKind::Fixed
     }
 
     /// With points of the object that stay where they are, as [`Lattice::holding`](super::Lattice::holding).
@@ -189,12 +157,7 @@ impl Cage {
     /// # Errors
     /// A point that is not finite, an exponent out of 0.5 to 8.
     pub fn holding(mut self, points: &[Vec3], power: f32) -> Result<Self, DeformError> {
-        super::check_power(power)?;
-        if let Some(&value) = points.iter().find(|p| !p.is_finite()) {
-            return Err(DeformError::NotFinite { what: "a held point".into(), value });
-        }
-        self.held.extend_from_slice(points);
-        self.power = power;
+        self.controls.hold(points, power)?;
         Ok(self)
     }
 
@@ -202,22 +165,14 @@ impl Cage {
     ///
     /// # Errors
     /// As [`Pins::new`](super::Pins::new).
-    pub fn followed(self, power: f32) -> Result<Self, DeformError> {
-        let of = |kind: PointKind| -> Vec<usize> { (0..self.count()).filter(|&i| self.kinds[i] == kind).collect() };
-        let moved = of(PointKind::Feature).into_iter().filter(|&i| self.moves[i] != Vec3::ZERO);
-        let feature: Vec<(Vec3, Vec3)> = moved.map(|i| (self.rest(i), self.place(i))).collect();
-        let fixed: Vec<Vec3> = of(PointKind::Fixed).into_iter().map(|i| self.place(i)).collect();
-        let free: Vec<u32> = of(PointKind::Overall).into_iter().map(|i| i as u32).collect();
-        if feature.is_empty() || fixed.is_empty() || free.is_empty() {
-            return Ok(self);
-        }
-        let pins = super::Pins::new(&fixed, &feature, power)?;
-        self.placed(&free, |_, p| pins.at(p))
+    pub fn followed(mut self, power: f32) -> Result<Self, DeformError> {
+        self.controls.follow(power, |i| called(&self.names, i))?;
+        Ok(self)
     }
 
     /// Corners with the middles of faces, how far each has moved, and triangles.
     fn triangulated(&self) -> (Vec<Vec3>, Vec<Vec3>, Vec<[u32; 3]>) {
-        let (mut at, mut by, mut triangles) = (self.rest.clone(), self.moves.clone(), vec![]);
+        let (mut at, mut by, mut triangles) = (self.controls.rest.clone(), self.controls.moves.clone(), vec![]);
         for ring in &self.faces {
             if let &[a, b, c] = ring.as_slice() {
                 triangles.push([a, b, c]);
@@ -227,7 +182,7 @@ impl Cage {
                 (ring.iter().map(|&v| of[v as usize].as_dvec3()).sum::<DVec3>() / ring.len() as f64).as_vec3()
             };
             let middle = at.len() as u32;
-            let (place, motion) = (mean(&self.rest), mean(&self.moves));
+            let (place, motion) = (mean(&self.controls.rest), mean(&self.controls.moves));
             at.push(place);
             by.push(motion);
             triangles.extend((0..ring.len()).map(|k| [ring[k], ring[(k + 1) % ring.len()], middle]));
@@ -264,13 +219,12 @@ impl Cage {
             return Ok(());
         }
         let shell = self.shell();
-        let moved = (0..self.count()).filter(|&i| self.moves[i] != Vec3::ZERO).map(|i| self.rest[i]).collect();
-        let limit = (!self.held.is_empty()).then(|| Limit { moved, held: self.held.clone(), power: self.power });
+        let limit = self.controls.limit();
         points.par_chunks(PIECE).zip(out.par_chunks_mut(PIECE)).try_for_each(|(from, to)| {
             task.check()?;
             mean::cage(&shell, from, to);
             for (p, q) in from.iter().zip(to.iter_mut()).filter(|(p, q)| p != q) {
-                if let Some(i) = self.rest.iter().position(|o| o == p) {
+                if let Some(i) = self.controls.rest.iter().position(|o| o == p) {
                     *q = self.place(i);
                 }
             }
@@ -288,7 +242,7 @@ impl Cage {
             return None;
         }
         let (at, by, triangles) = self.triangulated();
-        let whole = affine(&self.rest, &self.moves)?;
+        let whole = affine(&self.controls.rest, &self.controls.moves)?;
         let worst = triangles
             .iter()
             .map(|&t| {
@@ -314,7 +268,7 @@ impl Cage {
             return 0;
         }
         let shell = self.shell();
-        let farthest = self.moves.iter().map(|m| m.length()).fold(0.0, f32::max);
+        let farthest = self.controls.moves.iter().map(|m| m.length()).fold(0.0, f32::max);
         let (low, high) = shell.bounds();
         let (low, high) = (low.as_vec3() - Vec3::splat(farthest), high.as_vec3() + Vec3::splat(farthest));
         places
@@ -334,7 +288,11 @@ impl Cage {
 
     /// Feeds all of it to a key that has a say in where points go.
     pub fn digest(&self, into: &mut Digest) {
-        into.bytes(b"cage 1").vectors(&self.rest).vectors(&self.moves).vectors(&self.held).floats(&[self.power]);
+        into.bytes(b"cage 1")
+            .vectors(&self.controls.rest)
+            .vectors(&self.controls.moves)
+            .vectors(&self.controls.held)
+            .floats(&[self.controls.power]);
         for ring in &self.faces {
             into.number(ring.len() as u64).numbers(ring);
         }

@@ -10,7 +10,8 @@ use std::collections::BTreeMap;
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use rayon::prelude::*;
 
-use super::kernel::{self, Grid, Limit};
+use super::controls::Controls;
+use super::kernel::{self, Grid};
 use super::{DeformError, Folded, PointKind};
 use crate::geometry::Bounds;
 use crate::math::Digest;
@@ -28,13 +29,9 @@ pub struct Lattice {
     /// Columns: the edges S, T, U, cm.
     edges: Mat3,
     divisions: [usize; 3],
-    /// How far every control point has moved from its place in the even division, cm.
-    moves: Vec<Vec3>,
-    kinds: Vec<PointKind>,
+    /// At rest where the even division has them (1).
+    controls: Controls,
     groups: BTreeMap<String, Vec<u32>>,
-    /// Points on the object that stay, and the exponent of their affinity.
-    held: Vec<Vec3>,
-    power: f32,
 }
 
 /// Which control points: by index ranges, both ends included, or by the name of a group; without either all of them.
@@ -76,6 +73,17 @@ impl Move {
     }
 }
 
+/// The indices of control point number `index` along S, T, U.
+fn indices(divisions: [usize; 3], index: usize) -> [usize; 3] {
+    let (m, n) = (divisions[1] + 1, divisions[2] + 1);
+    [index / (m * n), index / n % m, index % n]
+}
+
+fn called(divisions: [usize; 3], index: usize) -> String {
+    let [a, b, c] = indices(divisions, index);
+    format!("control point {a}, {b}, {c}")
+}
+
 impl Lattice {
     /// A lattice with its corner at `origin` and edges `s`, `t`, `u`, divided evenly (1).
     ///
@@ -102,16 +110,14 @@ impl Lattice {
         }
         let divisions = divisions.map(|d| d as usize);
         let count = divisions.iter().map(|d| d + 1).product();
-        Ok(Self {
-            origin,
-            edges: Mat3::from_cols(s, t, u),
-            divisions,
-            moves: vec![Vec3::ZERO; count],
-            kinds: vec![PointKind::Overall; count],
-            groups: BTreeMap::new(),
-            held: vec![],
-            power: 2.0,
-        })
+        let edges = Mat3::from_cols(s, t, u);
+        let rest = |index: usize| {
+            let at = indices(divisions, index);
+            let part = |a: usize| at[a] as f32 / divisions[a] as f32;
+            origin + edges * Vec3::new(part(0), part(1), part(2))
+        };
+        let controls = Controls::new((0..count).map(rest).collect());
+        Ok(Self { origin, edges, divisions, controls, groups: BTreeMap::new() })
     }
 
     /// A lattice along the axes of space.
@@ -136,7 +142,7 @@ impl Lattice {
 
     /// How many control points there are.
     pub fn count(&self) -> usize {
-        self.moves.len()
+        self.controls.moves.len()
     }
 
     /// The number of a control point.
@@ -146,30 +152,27 @@ impl Lattice {
 
     /// The indices of control point number `index` along S, T, U.
     pub fn indices(&self, index: usize) -> [usize; 3] {
-        let (m, n) = (self.divisions[1] + 1, self.divisions[2] + 1);
-        [index / (m * n), index / n % m, index % n]
+        indices(self.divisions, index)
     }
 
     /// Where a control point stands in the even division (1).
     pub fn rest(&self, index: usize) -> Vec3 {
-        let at = self.indices(index);
-        let part = |a: usize| at[a] as f32 / self.divisions[a] as f32;
-        self.origin + self.edges * Vec3::new(part(0), part(1), part(2))
+        self.controls.rest[index]
     }
 
     /// Where a control point stands now.
     pub fn place(&self, index: usize) -> Vec3 {
-        self.rest(index) + self.moves[index]
+        self.controls.place(index)
     }
 
     /// What a control point is for.
     pub fn kind(&self, index: usize) -> PointKind {
-        self.kinds[index]
+        self.controls.kinds[index]
     }
 
     /// Points of the object that are held.
     pub fn held(&self) -> &[Vec3] {
-        &self.held
+        &self.controls.held
     }
 
     /// The names of its groups.
@@ -179,7 +182,7 @@ impl Lattice {
 
     /// True when no control point has moved.
     pub fn is_still(&self) -> bool {
-        self.moves.iter().all(|&m| m == Vec3::ZERO)
+        self.controls.is_still()
     }
 
     /// Local coordinates (s, t, u) of a place, 0 to 1 inside (2)-(4).
@@ -238,9 +241,7 @@ impl Lattice {
     /// With another kind for these control points.
     #[must_use]
     pub fn marked(mut self, points: &[u32], kind: PointKind) -> Self {
-        for &i in points {
-            self.kinds[i as usize] = kind;
-        }
+        self.controls.mark(points, kind);
         self
     }
 
@@ -249,8 +250,7 @@ impl Lattice {
     /// # Errors
     /// When all of them are fixed, or one would end where numbers end.
     pub fn moved(self, points: &[u32], by: &Move) -> Result<Self, DeformError> {
-        let free: Vec<u32> = points.iter().copied().filter(|&i| self.is_free(i)).collect();
-        let middle = free.iter().map(|&i| self.place(i as usize)).sum::<Vec3>() / free.len().max(1) as f32;
+        let middle = self.controls.middle(points);
         self.placed(points, |_, p| by.of(p, middle))
     }
 
@@ -258,30 +258,9 @@ impl Lattice {
     ///
     /// # Errors
     /// As [`Lattice::moved`].
-    pub fn placed(mut self, points: &[u32], mut place: impl FnMut(u32, Vec3) -> Vec3) -> Result<Self, DeformError> {
-        if !points.is_empty() && !points.iter().any(|&i| self.is_free(i)) {
-            return Err(DeformError::AllFixed { count: points.len() });
-        }
-        for &i in points {
-            if !self.is_free(i) {
-                continue;
-            }
-            let now = self.place(i as usize);
-            let target = place(i, now);
-            if !target.is_finite() {
-                let [a, b, c] = self.indices(i as usize);
-                let what = format!("the place of control point {a}, {b}, {c}");
-                return Err(DeformError::NotFinite { what, value: target });
-            }
-            if target != now {
-                self.moves[i as usize] = target - self.rest(i as usize);
-            }
-        }
+    pub fn placed(mut self, points: &[u32], place: impl FnMut(u32, Vec3) -> Vec3) -> Result<Self, DeformError> {
+        self.controls.put(points, |i| called(self.divisions, i), place)?;
         Ok(self)
-    }
-
-    fn is_free(&self, index: u32) -> bool {
-        self.kinds[index as usize] != PointKind::Fixed
     }
 
     /// With points of the object that stay where they are. A place moves the less the nearer it is to them: by the part
@@ -290,12 +269,7 @@ impl Lattice {
     /// # Errors
     /// A point that is not finite, an exponent out of 0.5 to 8.
     pub fn holding(mut self, points: &[Vec3], power: f32) -> Result<Self, DeformError> {
-        super::check_power(power)?;
-        if let Some(&value) = points.iter().find(|p| !p.is_finite()) {
-            return Err(DeformError::NotFinite { what: "a held point".into(), value });
-        }
-        self.held.extend_from_slice(points);
-        self.power = power;
+        self.controls.hold(points, power)?;
         Ok(self)
     }
 
@@ -304,22 +278,9 @@ impl Lattice {
     ///
     /// # Errors
     /// As [`Pins::new`](super::Pins::new).
-    pub fn followed(self, power: f32) -> Result<Self, DeformError> {
-        let of = |kind: PointKind| -> Vec<usize> { (0..self.count()).filter(|&i| self.kinds[i] == kind).collect() };
-        let feature: Vec<(Vec3, Vec3)> = (of(PointKind::Feature).into_iter())
-            .filter(|&i| self.moves[i] != Vec3::ZERO)
-            .map(|i| (self.rest(i), self.place(i)))
-            .collect();
-        let fixed: Vec<Vec3> = of(PointKind::Fixed).into_iter().map(|i| self.place(i)).collect();
-        if feature.is_empty() || fixed.is_empty() {
-            return Ok(self);
-        }
-        let pins = super::Pins::new(&fixed, &feature, power)?;
-        let free: Vec<u32> = of(PointKind::Overall).into_iter().map(|i| i as u32).collect();
-        if free.is_empty() {
-            return Ok(self);
-        }
-        self.placed(&free, |_, p| pins.at(p))
+    pub fn followed(mut self, power: f32) -> Result<Self, DeformError> {
+        self.controls.follow(power, |i| called(self.divisions, i))?;
+        Ok(self)
     }
 
     /// The place where the moved lattice is most folded over itself: where its Jacobian is least, when that is not above 0.
@@ -342,7 +303,7 @@ impl Lattice {
             let mut slopes = edges;
             for (i, a) in a.iter().enumerate() {
                 for (j, b) in b.iter().enumerate() {
-                    let row = &self.moves[(i * m + j) * n..][..n];
+                    let row = &self.controls.moves[(i * m + j) * n..][..n];
                     let [mut flat, mut steep] = [DVec3::ZERO; 2];
                     for (by, c) in row.iter().zip(c) {
                         flat += by.as_dvec3() * c[0];
@@ -386,8 +347,8 @@ impl Lattice {
     /// # Errors
     /// Cancelling.
     pub fn apply(&self, points: &[Vec3], out: &mut [Vec3], task: &Task) -> Result<(), DeformError> {
-        let grid = Grid::new(self.origin, &self.inverse(), self.divisions, &self.moves);
-        let limit = self.limit();
+        let grid = Grid::new(self.origin, &self.inverse(), self.divisions, &self.controls.moves);
+        let limit = self.controls.limit();
         points.par_chunks(PIECE).zip(out.par_chunks_mut(PIECE)).try_for_each(|(from, to)| {
             task.check()?;
             kernel::lattice(&grid, from, to);
@@ -398,17 +359,11 @@ impl Lattice {
         })
     }
 
-    fn limit(&self) -> Option<Limit> {
-        let moved: Vec<Vec3> =
-            (0..self.count()).filter(|&i| self.moves[i] != Vec3::ZERO).map(|i| self.rest(i)).collect();
-        (!self.held.is_empty()).then(|| Limit { moved, held: self.held.clone(), power: self.power })
-    }
-
     /// Feeds all of it to a key that has a say in where points go.
     pub fn digest(&self, into: &mut Digest) {
         into.bytes(b"lattice 2").vectors(&[self.origin, self.edges.x_axis, self.edges.y_axis, self.edges.z_axis]);
-        into.numbers(&self.divisions.map(|d| d as u32)).vectors(&self.moves);
-        into.vectors(&self.held).floats(&[self.power]);
+        into.numbers(&self.divisions.map(|d| d as u32)).vectors(&self.controls.moves);
+        into.vectors(&self.controls.held).floats(&[self.controls.power]);
     }
 }
 

@@ -8,6 +8,7 @@
 
 mod apply;
 mod cage;
+mod controls;
 mod dense;
 mod error;
 mod fit;
